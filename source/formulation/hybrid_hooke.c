@@ -221,7 +221,9 @@ LANES_INLINE void exert(const HookeWork *w, const HookeBonds *bonds, int lane, i
 enum {
   ALONE = 3,   /* bonds of a turn that are put aside, at most */
   BUNDLES = 4, /* that are filled at once */
-  FEW = 19     /* lattice vectors of blocks in which nothing is gained beside whole turns, at most */
+  FEW = 19,    /* lattice vectors of blocks in which nothing is gained beside whole turns, at most */
+  MANY =
+      54 /* from so many on displacements around a slice are read so often that bringing them into whole cache lines pays */
 };
 
 /** Slices with bonds that are put aside, of one block and in the same lanes. */
@@ -386,12 +388,32 @@ static void put_aside(const SliceOf *s, const HookeWork *w)
   if (bundle->slices == SLICE) exert_bundle(s->h, w, bundle);
 }
 
-/** @param[out] puts  some bonds are put aside. @return whether there is something in the sums of lattice vectors */
-LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *w, int kind, bool *puts)
+/** Brings what stands around a slice into whole cache lines, those of a bundle, which is not at work meanwhile. */
+LANES_INLINE void line_up(const SliceOf *s, HookeWork *w, HookeBonds *bonds, int kind)
 {
+  HookeAside *aside = w->aside;
+  const int vectors = s->h->lattice[aside->block].count;
+  for (int k = 0; k < 3; ++k) {
+    for (int n = 0; n < vectors; ++n)
+      for (int lane = 0; lane < SLICE; lane += LANES) {
+        lanes_store(aside->u[k] + SLICE * n + lane, lanes_load(w->u[k] + s->base[n] + lane));
+        if (kind & HOOKE_LINEAR) lanes_store(aside->at[k] + SLICE * n + lane, lanes_load(w->at[k] + s->base[n] + lane));
+      }
+    w->u[k] = aside->u[k];
+    w->at[k] = aside->at[k];
+  }
+  bonds->base = aside->number;
+}
+
+/** @param[out] puts  some bonds are put aside. @return whether there is something in the sums of lattice vectors */
+LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *given, int kind, bool *puts)
+{
+  HookeWork work = *given;
+  const HookeWork *w = &work;
   const Hybrid *h = s->h;
   HookeBonds bonds = {.base = s->base};
   const int block = h->particles->block[s->slice];
+  if (h->lattice[block].count >= MANY) line_up(s, &work, &bonds, kind);
   const bool bundles = h->lattice[block].count > FEW || (w->planar && h->lattice[block].kind);
   bool some = false;
   for (int n = 0; n < s->groups; ++n) {
