@@ -92,7 +92,11 @@ typedef struct Domain {
   int32_t *material; /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
-  bool begins_under_stress; /* some of its particles do */
+  bool may_leave_tensors; /* nothing but pictures and the like asks for them (domain_leave_tensors) */
+  bool leaves_tensors;    /* evaluations leave them out; `strain` and `stress` are scratch of the formulation */
+  bool tensors_are_old;   /* they are not of the state evaluated last */
+  double *own_strain[6], *own_stress[6]; /* meanwhile: the points' own arrays */
+  bool begins_under_stress;              /* some of its particles do */
   double *initial_strain
       [6]; /* [places] what points on particles that begin under stress add to their strains; NULL: none does */
   int64_t stressed; /* particles of the body that begin under stress, and between which mean stresses */
@@ -300,8 +304,19 @@ void domain_look(const Domain *domain, int64_t place, double strain[6], double s
  *  without them. */
 double domain_history(const Domain *domain, int64_t place, int k);
 
-/** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */
+/** Brings the arrays of strains and stresses up to date where no law or step writes them; makes them when they are first wanted. */
 int domain_observe(Domain *domain, Error *error);
+
+/** Lets evaluations leave strains and stresses of points on particles out, or no longer: whoever looks calls domain_observe before. Only where
+ *  `may_leave_tensors` is set; else nothing happens. */
+void domain_leave_tensors(Domain *domain, bool leave);
+/** Makes force states again, in whose place domain_observe has put what is left out. */
+void domain_stop_observing(Domain *domain);
+/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, of which no bond breaks and that nothing
+ *  strains beforehand. */
+bool domain_can_leave_tensors(const Domain *domain);
+/** Finds what is left out, at the displacements held; forces stay as they are. */
+void domain_find_tensors(Domain *domain);
 
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);

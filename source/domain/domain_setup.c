@@ -372,6 +372,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 
 void domain_destroy(Domain *d)
 {
+  domain_leave_tensors(d, false);
   forces_destroy(&d->forces);
   if (d->region_count > 1 || (d->region_count && !points_on_particles(&d->regions[0].points))) {
     for (int k = 0; k < 6; ++k) {

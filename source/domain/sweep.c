@@ -11,6 +11,7 @@
 typedef struct Purpose {
   double *const *at; /* NULL, or displacements at which a linearised step was made */
   bool no_law;       /* stresses are as they should be */
+  bool observes;     /* strains and stresses are written that evaluations leave out */
   unsigned without;  /* phases that write any of these are left out */
 } Purpose;
 
@@ -55,6 +56,15 @@ static void run_phases(const Region *region, int from, int to, const Sweep *swee
     if (!(region->type->phases[p].writes & purpose->without)) region->type->phases[p].run(region->formulation, sweep);
 }
 
+/** Writes what a batch has found for those who look. */
+static void keep_tensors(const Domain *d, int64_t first, int count, const double *found)
+{
+  for (int k = 0; k < 6; ++k) {
+    memcpy(d->strain[k] + first, found + k * BATCH, sizeof(double) * (size_t)count);
+    memcpy(d->stress[k] + first, found + (6 + k) * BATCH, sizeof(double) * (size_t)count);
+  }
+}
+
 /** A batch of points on particles, or of none.
  *  @param[in] send  only up to the law: strains are sent to servers */
 static void run_places(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
@@ -64,12 +74,16 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   Points *points = &region->points;
   const int64_t first = slices->first * SLICE;
   const int count = (int)(slices->last * SLICE - first);
-  Sweep sweep = {
-      .first = slices->first, .last = slices->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
+  const bool leaves = d->leaves_tensors || purpose->observes, apart = purpose->at || leaves;
+  Sweep sweep = {.first = slices->first,
+                 .last = slices->last,
+                 .carry = carry,
+                 .no_law = purpose->no_law && !leaves,
+                 .at = purpose->at};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
-    sweep.strain[k] = purpose->at ? change + k * BATCH : points->strain[k] + first;
-    sweep.stress[k] = purpose->at ? change + (6 + k) * BATCH : points->stress[k] + first;
+    sweep.strain[k] = apart ? change + k * BATCH : points->strain[k] + first;
+    sweep.stress[k] = apart ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
   run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
@@ -80,10 +94,11 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   if (points_on_particles(points)) {
     if (purpose->at)
       points_change(points, first, count, sweep.strain, sweep.stress);
-    else if (!purpose->no_law)
+    else if (!sweep.no_law)
       d->batch_failed[batch] = points_update(points, first, count, sweep.strain, sweep.stress);
   }
   run_phases(region, group->law, group->to, &sweep, purpose);
+  if (purpose->observes) keep_tensors(d, first, count, change);
 }
 
 /** Both ends of bonds whose laws could not be integrated are marked; several threads may mark one end. */
@@ -285,6 +300,7 @@ void domain_forces(Domain *d)
   TEAM_SINGLE
   {
     d->force_sum = 0;
+    d->tensors_are_old = d->leaves_tensors;
     d->failed_place = -1;
     for (int64_t b = 0; b < d->batch_count; ++b) {
       d->force_sum += d->batch_sum[b];
@@ -311,7 +327,19 @@ static void show_states(void *context)
 
 void domain_show_states(Domain *d)
 {
+  d->tensors_are_old |= d->leaves_tensors;
   team_run(show_states, d);
+}
+
+static void find_tensors(void *context)
+{
+  run_all(context, &(Purpose){.observes = true, .without = OF_STATES | OF_SUMS | OF_FORCES});
+}
+
+void domain_find_tensors(Domain *d)
+{
+  team_run(find_tensors, d);
+  d->tensors_are_old = false;
 }
 
 static void remake_forces(void *context)
@@ -348,6 +376,7 @@ bool domain_take_secants(Domain *d, Secants of)
 
 int domain_linearise(Domain *d, Error *error)
 {
+  domain_leave_tensors(d, false);
   for (int r = 0; r < d->region_count; ++r)
     if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
   domain_evaluate(d);

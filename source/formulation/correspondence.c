@@ -75,5 +75,6 @@ const FormulationType formulation_correspondence = {
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,
     .former_bonds = correspondence_former_bonds,
+    .scratch = correspondence_scratch,
     .bytes = correspondence_bytes,
 };

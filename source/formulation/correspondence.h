@@ -115,6 +115,7 @@ void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
 double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
+bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6]);
 FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */

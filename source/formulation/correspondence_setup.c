@@ -288,6 +288,17 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
   shape_gradient(c->family, (int32_t)place, inverse, f);
 }
 
+bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6])
+{
+  const Correspondence *c = formulation;
+  for (int k = 0; k < 6; ++k) strain[k] = c->state[k];
+  for (int k = 0; k < 3; ++k) {
+    stress[k] = c->state[6 + k];
+    stress[3 + k] = c->relative[k];
+  }
+  return !c->fading && !c->foreign;
+}
+
 size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;

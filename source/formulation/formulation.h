@@ -248,6 +248,9 @@ struct FormulationType {
   bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Adds what a user should know before a run, as one line, in `units`; NULL: nothing. */
   void (*describe)(const void *formulation, const Units *units, Text *text);
+  /** Arrays over places, of force states and what else each evaluation writes before it reads it: strains and stresses of the state evaluated
+   *  last find room there. No phase that ends before the law is asked reads them. @return false: it has none. NULL: never has */
+  bool (*scratch)(const void *formulation, double *strain[6], double *stress[6]);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
 };

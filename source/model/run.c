@@ -53,6 +53,7 @@ static int write_results(Run *run, Error *error)
   if (!status) {
     update_peaks(model);
     status = result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
+    domain_stop_observing(&model->domain);
   }
   run->unwritten |= status != 0;
   const double seconds = clock_seconds() - start;
@@ -440,6 +441,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   if (status) return status;
   run.host = &entry.host;
   model->solver.interrupted = wish->interrupted;
+  domain_leave_tensors(&model->domain, true);
   status = folder_make(wish->folder, error);
   if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
@@ -455,6 +457,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
     status = finish(&run, loop(&run, error), error);
   }
   model->solver.interrupted = NULL;
+  domain_leave_tensors(&model->domain, false);
   result_file_destroy(&run.results);
   folder_lock_return(&lock);
   free(run.names.items);

@@ -240,6 +240,13 @@ static void describe_stage(const void *section, const char *time, Text *text)
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
 }
 
+/** For the period of its vibration, and for what stiffness damps. */
+static bool linearises(const void *section)
+{
+  const ExplicitSpec *spec = section;
+  return spec->quasi_static || spec->damping.stiffness > 0;
+}
+
 static double damping(const void *section)
 {
   const ExplicitSpec *spec = section;
@@ -443,6 +450,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .destroy = destroy,
                                     .plan = explicit_plan,
                                     .check = explicit_check,
+                                    .linearises = linearises,
                                     .plan_again = explicit_plan_again,
                                     .begin = begin,
                                     .advance = advance,

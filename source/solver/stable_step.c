@@ -83,7 +83,7 @@ int stable_step(Domain *d, double *step, Error *error)
   if (failed) goto done;
 
   double *const *u = d->particles->displacement;
-  const bool elastic = domain_in_elastic_stage(d);
+  const bool elastic = domain_in_elastic_stage(d), old = d->tensors_are_old;
   domain_set_elastic_stage(d, true);
   Iteration it = {.domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1]};
   for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
@@ -120,6 +120,7 @@ int stable_step(Domain *d, double *step, Error *error)
   }
   domain_set_elastic_stage(d, elastic);
   domain_show_states(d); /* bonds that break next are judged by what particles show */
+  d->tensors_are_old = old || d->leaves_tensors;
   if (!isfinite(largest) || largest < 0)
     failed = error_add(error, BRECCIA_FAILURE,
                        "the stable time step could not be found: the internal forces are not those "
