@@ -65,7 +65,7 @@ int particles_create(Particles *particles, int64_t slices, int64_t count, Error 
     failed |= !(particles->displacement[k] = places_array(particles->places, "displacements", error));
     failed |= !(particles->velocity[k] = places_array(particles->places, "velocities", error));
     failed |= !(particles->internal[k] = places_array(particles->places, "internal forces", error));
-    failed |= !(particles->external[k] = places_array(particles->places, "external forces", error));
+    failed |= !(particles->external[k] = places_reserved(particles->places, "external forces", error));
   }
   particles->motions = 3;
   failed |= !(particles->volume = places_array(particles->places, "volumes", error));

@@ -96,6 +96,7 @@ void domain_leave_tensors(Domain *d, bool leave)
     memcpy(points->strain, d->own_strain, sizeof d->own_strain);
     memcpy(points->stress, d->own_stress, sizeof d->own_stress);
   }
+  d->regions[0].type->share_sums(d->regions[0].formulation, leave);
   memcpy(d->strain, points->strain, sizeof d->strain);
   memcpy(d->stress, points->stress, sizeof d->stress);
 }
@@ -348,7 +349,7 @@ double domain_stored_energy(Domain *d)
 
 double domain_damage(const Domain *d, int32_t place)
 {
-  if (!d->broken_count) return 0;
+  if (!d->broken_count || !d->family_volume) return 0;
   double whole = d->family_volume[place];
   return whole > 0 ? fmax(0, 1 - family_volume(&d->family, place) / whole) : 0;
 }
@@ -369,7 +370,7 @@ size_t domain_particle_bytes(const Domain *d)
   for (int r = 0; r < d->region_count; ++r)
     for (int k = 0; k < 3; ++k) bonds += d->regions[r].beside[k] ? (size_t)d->regions[r].points.count : 0;
   const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
-  return places * sizeof(double) * (own + 1 + tensors) + places * sizeof(int32_t) * 2 +
+  return places * sizeof(double) * (own + (d->family_volume ? 1 : 0) + tensors) + places * sizeof(int32_t) * 2 +
          (2 * history + bonds) * sizeof(double);
 }
 

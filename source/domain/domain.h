@@ -120,7 +120,7 @@ typedef struct Domain {
   double *
       counted; /* [places] volumes in sums of energies: 0 outside the body's supports, else the particles', which are not copied where
                             none is outside */
-  double *family_volume; /* [places] of the neighbours of each place, before anything broke */
+  double *family_volume; /* [places] of the neighbours of each place, before anything broke; NULL: nothing breaks */
   uint8_t *suspects;     /* [slices] */
   double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */
   double motion;         /* sum over steps of the largest displacement increment of any particle */

@@ -40,7 +40,8 @@ static Group group_from(const Domain *d, const Region *region, int from)
   unsigned written = 0;
   Group group = {from, -1, MOST_PHASES, from, false};
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
-    const unsigned read = phases[p].of_neighbours | (d->rows_cut ? phases[p].along_rows : 0);
+    const bool waits = d->rows_cut || d->leaves_tensors; /* sums of states take the memory of those of displacements */
+    const unsigned read = phases[p].of_neighbours | (waits ? phases[p].along_rows : 0);
     if (p > from && (read & written || phases[p].by_one || phases[from].by_one)) break;
     if (phases[p].of_lower & written && group.close == MOST_PHASES) group.close = p;
     if (phases[p].reads & OF_STRESSES && group.law < 0) group.law = p;

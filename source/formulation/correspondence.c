@@ -76,5 +76,6 @@ const FormulationType formulation_correspondence = {
     .characteristic_length = correspondence_characteristic_length,
     .former_bonds = correspondence_former_bonds,
     .scratch = correspondence_scratch,
+    .share_sums = correspondence_share_sums,
     .bytes = correspondence_bytes,
 };

@@ -62,7 +62,9 @@ struct Correspondence {
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull
-      [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
+      [ROW_KINDS];  /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
+  bool shares_sums; /* both may stand in one memory, in turn */
+  double *own_pull[ROW_KINDS]; /* apart from row_displacement, of which there is room for as much */
   int pulls;
   /* What bonds of stored slots read of a neighbour, together (correspondence_stored.h); NULL if there are none. */
   Surroundings around;
@@ -116,6 +118,7 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
 double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
 bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6]);
+void correspondence_share_sums(void *formulation, bool share);
 FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */

@@ -251,6 +251,9 @@ struct FormulationType {
   /** Arrays over places, of force states and what else each evaluation writes before it reads it: strains and stresses of the state evaluated
    *  last find room there. No phase that ends before the law is asked reads them. @return false: it has none. NULL: never has */
   bool (*scratch)(const void *formulation, double *strain[6], double *stress[6]);
+  /** From now on what is read along lattice rows of displacements and of force states stands in the same memory, or no longer: OF_SUMS are written only when all batches have
+   *  OF_STATES. Together with `scratch`. */
+  void (*share_sums)(void *formulation, bool share);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
 };
