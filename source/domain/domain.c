@@ -1,4 +1,4 @@
-#include "domain/domain.h"
+#include "domain/regions.h"
 
 #include "base/team.h"
 #include "base/tensor.h"
@@ -79,7 +79,7 @@ bool domain_can_leave_tensors(const Domain *d)
   for (int k = 0; k < d->material_count; ++k) hookean &= material_is_hookean(&d->materials[k]);
   return hookean && d->region_count == 1 && points_on_particles(&region->points) && !region->points.plane_stress &&
          region->type->scratch && region->type->scratch(region->formulation, strain, stress) && !d->failure.criterion &&
-         !d->gave_up && !d->is_strained && !d->begins_under_stress;
+         !d->gave_up && !d->is_strained && !d->begins_under_stress && !d->forces.count;
 }
 
 void domain_leave_tensors(Domain *d, bool leave)
@@ -96,9 +96,18 @@ void domain_leave_tensors(Domain *d, bool leave)
     memcpy(points->strain, d->own_strain, sizeof d->own_strain);
     memcpy(points->stress, d->own_stress, sizeof d->own_stress);
   }
-  d->regions[0].type->share_sums(d->regions[0].formulation, leave);
   memcpy(d->strain, points->strain, sizeof d->strain);
   memcpy(d->stress, points->stress, sizeof d->stress);
+}
+
+void domain_give_way(Domain *d, bool give)
+{
+  if (!d->may_leave_tensors) return;
+  domain_leave_tensors(d, !give);
+  if (give)
+    d->regions[0].type->give_way(d->regions[0].formulation);
+  else
+    domain_show_states(d);
 }
 
 void domain_stop_observing(Domain *d)
@@ -379,6 +388,6 @@ size_t domain_bytes(const Domain *d)
   size_t bytes = domain_particle_bytes(d) + family_bytes(&d->family);
   for (int r = 0; r < d->region_count; ++r)
     bytes += points_tangent_bytes(&d->regions[r].points) + bond_list_bytes(&d->regions[r].bonds, &d->family) +
-             d->regions[r].type->bytes(d->regions[r].formulation);
+             d->regions[r].type->bytes(d->regions[r].formulation) + window_bytes(d, &d->regions[r]);
   return bytes;
 }

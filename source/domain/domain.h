@@ -13,6 +13,16 @@ typedef struct Batch { /* slices first .. last - 1, of one region and material, 
   int64_t first, last;
 } Batch;
 
+/** Where threads keep what phases `ahead` write, of slices around the batch under way only (window.c). */
+typedef struct Window {
+  int64_t slices;  /* that have room at a time, a power of two */
+  int64_t numbers; /* of a slice */
+  int threads; /* at most so many work with windows: those of more would take as much as sums of all slices; 0: none does */
+  double *memory; /* [threads][slices][numbers] */
+  /* [batches of the region] the first slice of which the batch or a later one reads, and the last one of which it or an earlier one does */
+  int32_t *low, *high;
+} Window;
+
 /** Blocks of the body with one formulation. */
 typedef struct Region {
   const char *name; /* of the deck; NULL: what no region names */
@@ -34,6 +44,7 @@ typedef struct Region {
   int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
   int64_t *stripe, *stripe_slice; /* [stripe_count + 1] batches and slices at which stripes begin (Phase, by_stripes) */
   int64_t stripe_count;
+  Window window;
 } Region;
 
 /** Bonds between regions, place by place (joint.c). */
@@ -310,10 +321,13 @@ int domain_observe(Domain *domain, Error *error);
 /** Lets evaluations leave strains and stresses of points on particles out, or no longer: whoever looks calls domain_observe before. Only where
  *  `may_leave_tensors` is set; else nothing happens. */
 void domain_leave_tensors(Domain *domain, bool leave);
+/** Gives memory back that the next evaluation writes before it reads it, for those who need room after the last one; then takes it again, with force states of
+ *  the state held. Only where `may_leave_tensors` is set. */
+void domain_give_way(Domain *domain, bool give);
 /** Makes force states again, in whose place domain_observe has put what is left out. */
 void domain_stop_observing(Domain *domain);
-/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, of which no bond breaks and that nothing
- *  strains beforehand. */
+/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, of which no bond breaks, that nothing
+ *  strains beforehand, and on which nothing acts that may fail by itself, as bars and contact. */
 bool domain_can_leave_tensors(const Domain *domain);
 /** Finds what is left out, at the displacements held; forces stay as they are. */
 void domain_find_tensors(Domain *domain);

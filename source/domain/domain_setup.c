@@ -368,6 +368,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   }
   fill_rotary(d);
   status = create_failure(d, reader, spec->failure, &of);
+  for (int r = 0; r < d->region_count && !status; ++r) status = window_create(d, &d->regions[r], error);
   return status ? status : create_forces(d, reader, spec, space);
 }
 

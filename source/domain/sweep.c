@@ -31,18 +31,27 @@ static double force_magnitude(const Particles *p, const Batch *batch)
 typedef struct Group {
   int from, law, close, to;
   bool by_stripes;
+  /* Phase that this thread calls before them, into its window, for slices that its batches read; up to `filled` it is done. -1: there is none */
+  int ahead;
+  double *window;
+  int64_t filled;
 } Group;
 
-/** The group that begins with a phase. */
-static Group group_from(const Domain *d, const Region *region, int from)
+/** The group that begins with a phase. @param[in] window  of this thread; NULL: none */
+static Group group_from(const Domain *d, const Region *region, int from, double *window)
 {
   const Phase *phases = region->type->phases;
   unsigned written = 0;
-  Group group = {from, -1, MOST_PHASES, from, false};
+  Group group = {.from = from, .law = -1, .close = MOST_PHASES, .to = from, .ahead = -1};
+  if (window && phases[from].ahead) {
+    group.ahead = from;
+    group.window = window;
+    group.from = group.to = ++from;
+  }
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
-    const bool waits = d->rows_cut || d->leaves_tensors; /* sums of states take the memory of those of displacements */
-    const unsigned read = phases[p].of_neighbours | (waits ? phases[p].along_rows : 0);
+    const unsigned read = phases[p].of_neighbours | (d->rows_cut ? phases[p].along_rows : 0);
     if (p > from && (read & written || phases[p].by_one || phases[from].by_one)) break;
+    if (p > from && window && phases[p].ahead) break;
     if (phases[p].of_lower & written && group.close == MOST_PHASES) group.close = p;
     if (phases[p].reads & OF_STRESSES && group.law < 0) group.law = p;
     written |= phases[p].writes;
@@ -80,7 +89,9 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
                  .last = slices->last,
                  .carry = carry,
                  .no_law = purpose->no_law && !leaves,
-                 .at = purpose->at};
+                 .at = purpose->at,
+                 .window = group->window,
+                 .window_slices = region->window.slices};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
     sweep.strain[k] = apart ? change + k * BATCH : points->strain[k] + first;
@@ -174,8 +185,23 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
   if (!purpose->at && !purpose->no_law) d->batch_failed[batch] = failed;
 }
 
-static void run_group(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
+/** Brings the window of a group that has one to what a batch reads. By each thread in the order of its batches. */
+static void fill_window(const Region *region, Group *group, int64_t batch, const Purpose *purpose)
 {
+  if (group->ahead < 0) return;
+  const Window *w = &region->window;
+  const int64_t low = w->low[batch - region->first_batch], end = w->high[batch - region->first_batch] + 1;
+  if (group->filled < low) group->filled = low;
+  if (group->filled >= end) return;
+  const Sweep sweep = {
+      .first = group->filled, .last = end, .at = purpose->at, .window = group->window, .window_slices = w->slices};
+  run_phases(region, group->ahead, group->ahead + 1, &sweep, purpose);
+  group->filled = end;
+}
+
+static void run_group(Domain *d, Region *region, Group *group, int64_t batch, const Purpose *purpose, bool send)
+{
+  fill_window(region, group, batch, purpose);
   const bool rows = region->points.on_bonds && (region->points.components == 1 || points_keep_tensors(&region->points));
   if (group->law < 0 || !rows)
     run_places(d, region, group, batch, purpose, send);
@@ -184,8 +210,7 @@ static void run_group(Domain *d, Region *region, const Group *group, int64_t bat
 }
 
 /** Phases of a batch that have waited for lower batches. */
-static void finish_batch(Domain *d, Region *region, const Group *group, int64_t b, const Purpose *purpose,
-                         unsigned writes)
+static void finish_batch(Domain *d, Region *region, Group *group, int64_t b, const Purpose *purpose, unsigned writes)
 {
   run_group(d, region, group, b, purpose, false);
   if (writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
@@ -219,9 +244,10 @@ static bool closes_later(const Domain *d, Later *later, int64_t n)
 }
 
 /** Where bonds have broken: the same again for batches whose families turn out to carry less, with the stresses that laws have given. */
-static void settle(Domain *d, Region *region, const Group *group)
+static void settle(Domain *d, Region *region, Group *group)
 {
   domain_settle(d, region);
+  group->filled = 0;
   TEAM_FOR (n, region->last_batch - region->first_batch) {
     const int64_t b = region->first_batch + n, first = d->batches[b].first * SLICE,
                   places = d->batches[b].last * SLICE - first;
@@ -244,9 +270,10 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
 {
   const Phase *phases = region->type->phases;
   const int64_t from = region->first_batch, count = region->last_batch - from;
-  const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  const bool asks = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  double *window = window_of_thread(&region->window);
   for (int p = 0; p < MOST_PHASES && phases[p].run;) {
-    const Group group = group_from(d, region, p);
+    Group group = group_from(d, region, p, window);
     p = group.to;
     unsigned writes = 0;
     for (int n = group.from; n < group.to; ++n) writes |= phases[n].writes & ~purpose->without;
@@ -256,9 +283,10 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
       phases[group.from].run(region->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
       continue;
     }
-    if (ahead && group.law >= 0) { /* servers work while strains of further points are found */
+    if (asks && group.law >= 0) { /* servers work while strains of further points are found */
       TEAM_FOR (n, count) run_group(d, region, &group, from + n, purpose, true);
       TEAM_SINGLE points_await(&region->points);
+      group.filled = 0;
     }
     if (writes & OF_SHOWN && region->border_count) show_border(region, &group, purpose);
     if (group.by_stripes) {
@@ -267,7 +295,7 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
           run_group(d, region, &group, b, purpose, false);
       continue;
     }
-    Group before = group, after = {group.close, -1, MOST_PHASES, group.to, false};
+    Group before = group, after = {.from = group.close, .law = -1, .close = MOST_PHASES, .to = group.to, .ahead = -1};
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
     const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;

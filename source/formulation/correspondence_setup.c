@@ -105,7 +105,7 @@ void correspondence_destroy(void *formulation)
   }
   for (int kind = 0; kind < ROW_KINDS; ++kind) {
     places_free(&c->row_displacement[kind]);
-    places_free(&c->own_pull[kind]);
+    places_free(&c->row_pull[kind]);
   }
   correspondence_destroy_fading(c);
   places_free(&c->row);
@@ -262,10 +262,10 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   }
   c->pulls = pull_count(c->control);
   for (int kind = 0; kind < c->family->rows.kinds; ++kind) {
-    failed |= !(c->row_displacement[kind] = places_reserved(pull_count(c->widest) * places, "row sums", error));
-    failed |= !(c->own_pull[kind] = places_reserved(pull_count(c->widest) * places, "row sums", error));
-    c->row_pull[kind] = c->own_pull[kind];
+    failed |= !(c->row_displacement[kind] = places_reserved(6 * places, "row sums", error));
+    failed |= !(c->row_pull[kind] = places_reserved(pull_count(c->widest) * places, "row sums", error));
   }
+  c->round = -1;
   if (c->family->stored_slots) {
     failed |= surroundings_create(&c->around, c->family, error) != BRECCIA_OK;
     failed |= !(c->row = places_array(state_length(c->widest) * places, "force states", error));
@@ -289,18 +289,31 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
   shape_gradient(c->family, (int32_t)place, inverse, f);
 }
 
-void correspondence_share_sums(void *formulation, bool share)
+void correspondence_give_way(void *formulation)
 {
   Correspondence *c = formulation;
-  c->shares_sums |= share;
-  for (int kind = 0; kind < c->family->rows.kinds; ++kind) {
-    double *fresh = share ? NULL : places_reserved(pull_count(c->widest) * c->particles->places, "row sums", NULL);
-    if (fresh) { /* until the next evaluation nobody needs the sums, and their memory goes back */
-      places_free(&c->row_displacement[kind]);
-      c->row_displacement[kind] = fresh;
-    }
-    c->row_pull[kind] = share ? c->row_displacement[kind] : c->own_pull[kind];
+  for (int k = 0; k < 12; ++k) {
+    double **array = k < 9 ? &c->state[k] : &c->relative[k - 9],
+           *fresh = places_reserved(c->particles->places, "force states", NULL);
+    if (!fresh) continue;
+    places_free(array);
+    *array = fresh;
   }
+}
+
+SumsAround correspondence_sums_around(const void *formulation, int64_t slice)
+{
+  const Correspondence *c = formulation;
+  const Family *f = c->family;
+  const int64_t kinds = f->rows.kinds, pulls = pull_count(c->widest);
+  SumsAround sums = {.low = slice, .high = slice, .all = kinds * (6 + pulls) * SLICE};
+  if (!f->stored_slots && !c->foreign) sums.most = kinds * pulls * SLICE;
+  for (int64_t slot = f->rows.first[slice]; slot < f->stored[slice]; ++slot) {
+    const int64_t there = family_base(f, slice, slot) / SLICE;
+    if (there < sums.low) sums.low = there;
+    if (there > sums.high) sums.high = there;
+  }
+  return sums;
 }
 
 bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6])
@@ -319,8 +332,7 @@ size_t correspondence_bytes(const void *formulation)
   const Correspondence *c = formulation;
   size_t numbers = 9 + 3 + (size_t)hold_components(c->widest) + (hold_is_read(c->widest) ? 3 : 0) + (c->turns ? 9 : 0) +
                    (c->gradients ? 9 : 0);
-  numbers += (size_t)(c->family->rows.kinds * ((c->shares_sums ? 0 : 6) + pull_count(c->widest)) +
-                      (c->row ? state_length(c->widest) + 8 : 0));
+  numbers += c->row ? (size_t)state_length(c->widest) + 8 : 0;
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          surroundings_bytes(&c->around, c->family) + correspondence_fading_bytes(c);
 }

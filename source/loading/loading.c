@@ -237,7 +237,8 @@ void loading_state(Loading *loading, StateList *list)
 static void clear(const Selection *selection, Particles *p)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < p->motions; ++k) p->external[k][selection->places[n]] = 0;
+    for (int k = 0; k < p->motions; ++k)
+      if (p->external[k][selection->places[n]] != 0) p->external[k][selection->places[n]] = 0;
 }
 
 /** Loads may overlap: they are cleared first, then added. */

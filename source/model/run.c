@@ -424,9 +424,9 @@ static int finish(Run *run, int status, Error *error)
   status = host_status(run->host, status, error);
   const int untold = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
   if (untold && !status) status = untold;
-  domain_leave_tensors(&model->domain, false); /* pictures take the memory of sums */
+  domain_give_way(&model->domain, true);
   const int undrawn = run->unwritten ? BRECCIA_OK : run_draw_pictures(run, error);
-  domain_leave_tensors(&model->domain, true);
+  domain_give_way(&model->domain, false);
   run->unwritten |= untold != BRECCIA_OK;
   run_tell_outcome(run, status);
   free(problem);

@@ -17,7 +17,7 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
                .region_count = d->region_count};
   for (int k = 0; k < d->particles->motions; ++k) {
     failed |= !(a->displacement[k] = places_reserved(places, label, error));
-    failed |= !(a->internal[k] = places_array(places, label, error));
+    failed |= !(a->internal[k] = places_reserved(places, label, error));
   }
   if (!a->tensors || failed) return BRECCIA_FAILURE;
   for (int r = 0; r < d->region_count; ++r) {

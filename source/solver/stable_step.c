@@ -107,8 +107,7 @@ int stable_step(Domain *d, double *step, Error *error)
   if (failed) goto done;
 
   /* Forces of elastic bodies follow from displacements, and are evaluated before steps begin. */
-  const bool lean = d->leaves_tensors && !d->forces.count,
-             at_zero = lean && are_zero(d->particles, d->particles->displacement),
+  const bool lean = d->leaves_tensors, at_zero = lean && are_zero(d->particles, d->particles->displacement),
              at_rest = at_zero && are_zero(d->particles, d->particles->velocity);
   double *const *u = d->particles->displacement, *const *base_f = lean ? d->particles->internal : own_f;
   const bool elastic = domain_in_elastic_stage(d), old = d->tensors_are_old;
@@ -123,7 +122,9 @@ int stable_step(Domain *d, double *step, Error *error)
     aside_exchange(&aside, d);
     for (int k = 0; k < motions; ++k) memcpy(own_f[k], aside.internal[k], sizeof(double) * (size_t)places);
   }
+  const bool bears_nothing = at_zero && are_zero(d->particles, d->particles->internal);
   if (at_zero) put_aside(d->particles, d->particles->displacement, aside.displacement);
+  if (bears_nothing) put_aside(d->particles, d->particles->internal, aside.internal);
   if (at_rest) put_aside(d->particles, d->particles->velocity, v[0]);
 
   uint64_t seed = 1;
@@ -154,6 +155,7 @@ int stable_step(Domain *d, double *step, Error *error)
   }
   domain_set_elastic_stage(d, elastic);
   if (at_zero) take_back(d->particles, d->particles->displacement, aside.displacement);
+  if (bears_nothing) take_back(d->particles, d->particles->internal, aside.internal);
   if (at_rest) take_back(d->particles, d->particles->velocity, v[0]);
   domain_show_states(d); /* bonds that break next are judged by what particles show */
   d->tensors_are_old = old || d->leaves_tensors;

@@ -404,6 +404,7 @@ static void strains_are_kept_where_steps_need_them(void **state)
                {"solve: {explicit: {quasi-static: {period: 10}}}\n", false},
                {"solve: [{static: {increments: 2}}, {explicit: {steps: 4}}]\n", false},
                {"solve: {explicit: {steps: 4}}\nfailure: {critical stretch: 0.1}\n", false},
+               {"solve: {explicit: {steps: 4}}\ncontact: {}\n", false},
                {"solve: {explicit: {steps: 4}}\nwatch: {s: {stress and strain of: {face: x+}}}\n", false}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     breccia_model *m = pulled_bar("small", cases[k].more);
