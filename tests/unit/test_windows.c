@@ -3,8 +3,7 @@
 #include "support.h"
 
 /** A plate that is pulled and sheared at one end. */
-static breccia_model *plate_on(int threads, const char *law, const char *peridynamics,
-                               const char *more)
+static breccia_model *plate_on(int threads, const char *law, const char *peridynamics, const char *more)
 {
   return model_on(threads,
                   "materials: {m: {model: %s, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
