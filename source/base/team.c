@@ -244,6 +244,16 @@ int team_size(void)
   return own.size;
 }
 
+int team_rank(void)
+{
+  return own.rank;
+}
+
+int team_called(void)
+{
+  return own.inside ? 1 : team_threads(own.team);
+}
+
 TeamShare team_share_of(int64_t count, int thread)
 {
   const int64_t part = count / own.size, more = count % own.size;

@@ -31,6 +31,8 @@ Team *team_use(Team *team);
 
 /** Calls `work` on every thread of the team in use, and returns when all are through. A trap of this thread (base/trap.h) is theirs too. */
 void team_run(void (*work)(void *context), void *context);
+/** Threads that team_run of this thread calls. */
+int team_called(void);
 /** Calls `work` for 0 .. count - 1, shared out among the team in use. */
 void team_each(int64_t count, void (*work)(void *context, int64_t index), void *context);
 
@@ -44,8 +46,9 @@ typedef struct TeamShare {
 
 /** This thread's part of 0 .. count - 1: runs of equal length, the same ones every time. */
 TeamShare team_share(int64_t count);
-/** Threads that work together here, and the part of one of them: 0 .. team_size() - 1. */
+/** Threads that work together here, which of them this one is, and the part of one of them: 0 .. team_size() - 1. */
 int team_size(void);
+int team_rank(void);
 TeamShare team_share_of(int64_t count, int thread);
 /** True on one thread of the team, on another one for the next number. */
 bool team_turn(int64_t number);

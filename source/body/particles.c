@@ -17,19 +17,33 @@ static void touch_page(void *array, int64_t page)
   ((double *)array)[page * PAGE_NUMBERS] = 0;
 }
 
-double *places_array(int64_t places, const char *label, Error *error)
+enum { SPARE = 2 * SLICE + 2 * LINE + PAGE_NUMBERS };
+
+/** The array within zeroed memory that has SPARE numbers more. */
+static double *staggered(double *memory)
 {
-  size_t spare = 2 * SLICE + 2 * LINE + PAGE_NUMBERS;
-  double *memory = memory_zeroed((size_t)places + spare, sizeof(double), label, error);
-  if (!memory) return NULL;
   uint64_t page = (uint64_t)(uintptr_t)memory >> 12;
   uint64_t shift = page * 0x9e3779b97f4a7c15u >> 58; /* 0 to 63 lines */
   double *array = memory + LINE + LINE * shift + SLICE;
   array += (-(uintptr_t)array & 63) / sizeof(double);
   memcpy(array - SLICE - 1, &memory, sizeof memory);
+  return array;
+}
+
+double *places_array(int64_t places, const char *label, Error *error)
+{
+  double *memory = memory_zeroed((size_t)places + SPARE, sizeof(double), label, error);
+  if (!memory) return NULL;
+  double *array = staggered(memory);
   /* A page lies near the processor that first writes to it: each thread writes to the part that it will work on. */
   team_each((places + PAGE_NUMBERS - 1) / PAGE_NUMBERS, touch_page, array);
   return array;
+}
+
+double *places_reserved(int64_t places, const char *label, Error *error)
+{
+  double *memory = memory_reserved((size_t)places + SPARE, sizeof(double), label, error);
+  return memory ? staggered(memory) : NULL;
 }
 
 void places_free(double **array)
@@ -51,7 +65,7 @@ int particles_create(Particles *particles, int64_t slices, int64_t count, Error 
     failed |= !(particles->displacement[k] = places_array(particles->places, "displacements", error));
     failed |= !(particles->velocity[k] = places_array(particles->places, "velocities", error));
     failed |= !(particles->internal[k] = places_array(particles->places, "internal forces", error));
-    failed |= !(particles->external[k] = places_array(particles->places, "external forces", error));
+    failed |= !(particles->external[k] = places_reserved(particles->places, "external forces", error));
   }
   particles->motions = 3;
   failed |= !(particles->volume = places_array(particles->places, "volumes", error));

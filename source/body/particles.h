@@ -42,6 +42,8 @@ typedef struct Particles {
 
 /** Zeroed array over places with the spare entries that Particles promises. Freed with places_free. */
 double *places_array(int64_t places, const char *label, Error *error);
+/** The same, and memory is taken only where something is written. */
+double *places_reserved(int64_t places, const char *label, Error *error);
 void places_free(double **array);
 
 int particles_create(Particles *particles, int64_t slices, int64_t count, Error *error);

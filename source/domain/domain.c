@@ -1,4 +1,4 @@
-#include "domain/domain.h"
+#include "domain/regions.h"
 
 #include "base/team.h"
 #include "base/tensor.h"
@@ -71,9 +71,56 @@ static void observe(void *context, int64_t n)
   }
 }
 
+bool domain_can_leave_tensors(const Domain *d)
+{
+  const Region *region = &d->regions[0];
+  double *strain[6], *stress[6];
+  bool hookean = true;
+  for (int k = 0; k < d->material_count; ++k) hookean &= material_is_hookean(&d->materials[k]);
+  return hookean && d->region_count == 1 && points_on_particles(&region->points) && !region->points.plane_stress &&
+         region->type->scratch && region->type->scratch(region->formulation, strain, stress) && !d->failure.criterion &&
+         !d->gave_up && !d->is_strained && !d->begins_under_stress && !d->forces.count;
+}
+
+void domain_leave_tensors(Domain *d, bool leave)
+{
+  if (!d->may_leave_tensors || leave == d->leaves_tensors) return;
+  Points *points = &d->regions[0].points;
+  d->leaves_tensors = leave;
+  d->tensors_are_old = true;
+  if (leave) {
+    memcpy(d->own_strain, points->strain, sizeof d->own_strain);
+    memcpy(d->own_stress, points->stress, sizeof d->own_stress);
+    d->regions[0].type->scratch(d->regions[0].formulation, points->strain, points->stress);
+  } else {
+    memcpy(points->strain, d->own_strain, sizeof d->own_strain);
+    memcpy(points->stress, d->own_stress, sizeof d->own_stress);
+  }
+  memcpy(d->strain, points->strain, sizeof d->strain);
+  memcpy(d->stress, points->stress, sizeof d->stress);
+}
+
+void domain_give_way(Domain *d, bool give)
+{
+  if (!d->may_leave_tensors) return;
+  domain_leave_tensors(d, !give);
+  if (give)
+    d->regions[0].type->give_way(d->regions[0].formulation);
+  else
+    domain_show_states(d);
+}
+
+void domain_stop_observing(Domain *d)
+{
+  if (d->leaves_tensors && !d->tensors_are_old) domain_show_states(d);
+}
+
 int domain_observe(Domain *d, Error *error)
 {
-  if (d->region_count == 1 && points_on_particles(&d->regions[0].points)) return BRECCIA_OK;
+  if (d->region_count == 1 && points_on_particles(&d->regions[0].points)) {
+    if (d->tensors_are_old) domain_find_tensors(d);
+    return BRECCIA_OK;
+  }
   for (int k = 0; k < 6; ++k) {
     if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
     if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
@@ -299,8 +346,11 @@ double domain_stored_energy(Domain *d)
 {
   bool shows = false;
   for (int r = 0; r < d->region_count; ++r) shows |= d->regions[r].type->show_held != NULL;
+  const bool looks = d->tensors_are_old;
+  if (looks) domain_find_tensors(d);
   if (shows) team_each(d->particles->slices, show_held, d);
   team_each(d->batch_count, store_batch, d);
+  if (looks) domain_stop_observing(d);
   double sum = 0;
   for (int64_t b = 0; b < d->batch_count; ++b) sum += d->batch_sum[b]; /* in order */
   return sum;
@@ -308,7 +358,7 @@ double domain_stored_energy(Domain *d)
 
 double domain_damage(const Domain *d, int32_t place)
 {
-  if (!d->broken_count) return 0;
+  if (!d->broken_count || !d->family_volume) return 0;
   double whole = d->family_volume[place];
   return whole > 0 ? fmax(0, 1 - family_volume(&d->family, place) / whole) : 0;
 }
@@ -320,7 +370,7 @@ size_t domain_particle_bytes(const Domain *d)
   for (int r = 0; r < d->region_count; ++r) {
     history += d->regions[r].points.history_size;
     if (points_on_particles(&d->regions[r].points))
-      tensors = d->initial_strain[0] ? 18 : 12;
+      tensors = d->initial_strain[0] ? 18 : d->may_leave_tensors ? 0 : 12;
     else if (points_keep_tensors(&d->regions[r].points))
       bonds += (d->regions[r].initial[0] ? 18 : 12) * (size_t)d->regions[r].points.count;
   }
@@ -329,7 +379,7 @@ size_t domain_particle_bytes(const Domain *d)
   for (int r = 0; r < d->region_count; ++r)
     for (int k = 0; k < 3; ++k) bonds += d->regions[r].beside[k] ? (size_t)d->regions[r].points.count : 0;
   const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
-  return places * sizeof(double) * (own + 1 + tensors) + places * sizeof(int32_t) * 2 +
+  return places * sizeof(double) * (own + (d->family_volume ? 1 : 0) + tensors) + places * sizeof(int32_t) * 2 +
          (2 * history + bonds) * sizeof(double);
 }
 
@@ -338,6 +388,6 @@ size_t domain_bytes(const Domain *d)
   size_t bytes = domain_particle_bytes(d) + family_bytes(&d->family);
   for (int r = 0; r < d->region_count; ++r)
     bytes += points_tangent_bytes(&d->regions[r].points) + bond_list_bytes(&d->regions[r].bonds, &d->family) +
-             d->regions[r].type->bytes(d->regions[r].formulation);
+             d->regions[r].type->bytes(d->regions[r].formulation) + window_bytes(d, &d->regions[r]);
   return bytes;
 }

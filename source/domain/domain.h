@@ -13,6 +13,16 @@ typedef struct Batch { /* slices first .. last - 1, of one region and material, 
   int64_t first, last;
 } Batch;
 
+/** Where threads keep what phases `ahead` write, of slices around the batch under way only (window.c). */
+typedef struct Window {
+  int64_t slices;  /* that have room at a time, a power of two */
+  int64_t numbers; /* of a slice */
+  int threads; /* at most so many work with windows: those of more would take as much as sums of all slices; 0: none does */
+  double *memory; /* [threads][slices][numbers] */
+  /* [batches of the region] the first slice of which the batch or a later one reads, and the last one of which it or an earlier one does */
+  int32_t *low, *high;
+} Window;
+
 /** Blocks of the body with one formulation. */
 typedef struct Region {
   const char *name; /* of the deck; NULL: what no region names */
@@ -34,6 +44,7 @@ typedef struct Region {
   int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
   int64_t *stripe, *stripe_slice; /* [stripe_count + 1] batches and slices at which stripes begin (Phase, by_stripes) */
   int64_t stripe_count;
+  Window window;
 } Region;
 
 /** Bonds between regions, place by place (joint.c). */
@@ -92,7 +103,11 @@ typedef struct Domain {
   int32_t *material; /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
-  bool begins_under_stress; /* some of its particles do */
+  bool may_leave_tensors; /* nothing but pictures and the like asks for them (domain_leave_tensors) */
+  bool leaves_tensors;    /* evaluations leave them out; `strain` and `stress` are scratch of the formulation */
+  bool tensors_are_old;   /* they are not of the state evaluated last */
+  double *own_strain[6], *own_stress[6]; /* meanwhile: the points' own arrays */
+  bool begins_under_stress;              /* some of its particles do */
   double *initial_strain
       [6]; /* [places] what points on particles that begin under stress add to their strains; NULL: none does */
   int64_t stressed; /* particles of the body that begin under stress, and between which mean stresses */
@@ -116,7 +131,7 @@ typedef struct Domain {
   double *
       counted; /* [places] volumes in sums of energies: 0 outside the body's supports, else the particles', which are not copied where
                             none is outside */
-  double *family_volume; /* [places] of the neighbours of each place, before anything broke */
+  double *family_volume; /* [places] of the neighbours of each place, before anything broke; NULL: nothing breaks */
   uint8_t *suspects;     /* [slices] */
   double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */
   double motion;         /* sum over steps of the largest displacement increment of any particle */
@@ -300,8 +315,22 @@ void domain_look(const Domain *domain, int64_t place, double strain[6], double s
  *  without them. */
 double domain_history(const Domain *domain, int64_t place, int k);
 
-/** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */
+/** Brings the arrays of strains and stresses up to date where no law or step writes them; makes them when they are first wanted. */
 int domain_observe(Domain *domain, Error *error);
+
+/** Lets evaluations leave strains and stresses of points on particles out, or no longer: whoever looks calls domain_observe before. Only where
+ *  `may_leave_tensors` is set; else nothing happens. */
+void domain_leave_tensors(Domain *domain, bool leave);
+/** Gives memory back that the next evaluation writes before it reads it, for those who need room after the last one; then takes it again, with force states of
+ *  the state held. Only where `may_leave_tensors` is set. */
+void domain_give_way(Domain *domain, bool give);
+/** Makes force states again, in whose place domain_observe has put what is left out. */
+void domain_stop_observing(Domain *domain);
+/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, of which no bond breaks, that nothing
+ *  strains beforehand, and on which nothing acts that may fail by itself, as bars and contact. */
+bool domain_can_leave_tensors(const Domain *domain);
+/** Finds what is left out, at the displacements held; forces stay as they are. */
+void domain_find_tensors(Domain *domain);
 
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);

@@ -196,11 +196,12 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
 {
   Particles *p = d->particles;
   d->material = memory_zeroed((size_t)p->slices, sizeof(int32_t), "materials of slices", error);
-  d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error);
+  if (spec->failure && !(d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error)))
+    return BRECCIA_FAILURE;
   d->is_torn = memory_zeroed((size_t)p->places, 1, "torn families", error);
   d->suspects = memory_zeroed((size_t)p->slices, 1, "suspect slices", error);
   d->look_again = memory_zeroed((size_t)p->slices, sizeof(double), "suspect slices", error);
-  if (!d->material || !d->family_volume || !d->is_torn || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
+  if (!d->material || !d->is_torn || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < p->slices; ++s) {
     if (s && p->block[s] == p->block[s - 1]) d->material[s] = d->material[s - 1]; /* so that it is not looked for */
     const SectionHead *named = section_find(spec->materials, d->body.blocks[p->block[s]]->material);
@@ -331,7 +332,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   status = family_create(&d->family, &d->body, &family, told);
   if (tell_at(reader, section_node(pd, "horizon"), status, &told)) return status;
   CHECK(family_is_valid(&d->family));
-  team_each(d->particles->places, weigh_family, d);
+  if (spec->failure) team_each(d->particles->places, weigh_family, d);
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
   if (may_give_up && d->region_count > 1)
@@ -367,11 +368,13 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   }
   fill_rotary(d);
   status = create_failure(d, reader, spec->failure, &of);
+  for (int r = 0; r < d->region_count && !status; ++r) status = window_create(d, &d->regions[r], error);
   return status ? status : create_forces(d, reader, spec, space);
 }
 
 void domain_destroy(Domain *d)
 {
+  domain_leave_tensors(d, false);
   forces_destroy(&d->forces);
   if (d->region_count > 1 || (d->region_count && !points_on_particles(&d->regions[0].points))) {
     for (int k = 0; k < 6; ++k) {

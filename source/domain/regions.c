@@ -170,6 +170,7 @@ void regions_destroy(Domain *d)
     free(region->border);
     free(region->stripe);
     free(region->stripe_slice);
+    window_destroy(&region->window);
   }
   free(d->regions);
   free(d->region);

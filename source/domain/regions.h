@@ -28,6 +28,14 @@ int domain_create_materials(Domain *domain, const DeckReader *reader, const Doma
 int region_create_points(Domain *domain, Region *region, Space space, bool may_give_up, const BondLength *of,
                          Error *error);
 
+/** Windows for a region whose bonds do not break, where they take less than half of what sums of all slices do. Its formulation is made. */
+int window_create(Domain *domain, Region *region, Error *error);
+void window_destroy(Window *window);
+/** Window of this thread; NULL: this team works without. */
+double *window_of_thread(const Window *window);
+/** Bytes of what phases `ahead` write. */
+size_t window_bytes(const Domain *domain, const Region *region);
+
 /** Finds the bonds between regions. */
 int joint_create(Joint *joint, const Domain *domain, Error *error);
 void joint_destroy(Joint *joint);

@@ -11,6 +11,7 @@
 typedef struct Purpose {
   double *const *at; /* NULL, or displacements at which a linearised step was made */
   bool no_law;       /* stresses are as they should be */
+  bool observes;     /* strains and stresses are written that evaluations leave out */
   unsigned without;  /* phases that write any of these are left out */
 } Purpose;
 
@@ -30,17 +31,27 @@ static double force_magnitude(const Particles *p, const Batch *batch)
 typedef struct Group {
   int from, law, close, to;
   bool by_stripes;
+  /* Phase that this thread calls before them, into its window, for slices that its batches read; up to `filled` it is done. -1: there is none */
+  int ahead;
+  double *window;
+  int64_t filled;
 } Group;
 
-/** The group that begins with a phase. */
-static Group group_from(const Domain *d, const Region *region, int from)
+/** The group that begins with a phase. @param[in] window  of this thread; NULL: none */
+static Group group_from(const Domain *d, const Region *region, int from, double *window)
 {
   const Phase *phases = region->type->phases;
   unsigned written = 0;
-  Group group = {from, -1, MOST_PHASES, from, false};
+  Group group = {.from = from, .law = -1, .close = MOST_PHASES, .to = from, .ahead = -1};
+  if (window && phases[from].ahead) {
+    group.ahead = from;
+    group.window = window;
+    group.from = group.to = ++from;
+  }
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
     const unsigned read = phases[p].of_neighbours | (d->rows_cut ? phases[p].along_rows : 0);
     if (p > from && (read & written || phases[p].by_one || phases[from].by_one)) break;
+    if (p > from && window && phases[p].ahead) break;
     if (phases[p].of_lower & written && group.close == MOST_PHASES) group.close = p;
     if (phases[p].reads & OF_STRESSES && group.law < 0) group.law = p;
     written |= phases[p].writes;
@@ -55,6 +66,15 @@ static void run_phases(const Region *region, int from, int to, const Sweep *swee
     if (!(region->type->phases[p].writes & purpose->without)) region->type->phases[p].run(region->formulation, sweep);
 }
 
+/** Writes what a batch has found for those who look. */
+static void keep_tensors(const Domain *d, int64_t first, int count, const double *found)
+{
+  for (int k = 0; k < 6; ++k) {
+    memcpy(d->strain[k] + first, found + k * BATCH, sizeof(double) * (size_t)count);
+    memcpy(d->stress[k] + first, found + (6 + k) * BATCH, sizeof(double) * (size_t)count);
+  }
+}
+
 /** A batch of points on particles, or of none.
  *  @param[in] send  only up to the law: strains are sent to servers */
 static void run_places(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
@@ -64,12 +84,18 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   Points *points = &region->points;
   const int64_t first = slices->first * SLICE;
   const int count = (int)(slices->last * SLICE - first);
-  Sweep sweep = {
-      .first = slices->first, .last = slices->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
+  const bool leaves = d->leaves_tensors || purpose->observes, apart = purpose->at || leaves;
+  Sweep sweep = {.first = slices->first,
+                 .last = slices->last,
+                 .carry = carry,
+                 .no_law = purpose->no_law && !leaves,
+                 .at = purpose->at,
+                 .window = group->window,
+                 .window_slices = region->window.slices};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
-    sweep.strain[k] = purpose->at ? change + k * BATCH : points->strain[k] + first;
-    sweep.stress[k] = purpose->at ? change + (6 + k) * BATCH : points->stress[k] + first;
+    sweep.strain[k] = apart ? change + k * BATCH : points->strain[k] + first;
+    sweep.stress[k] = apart ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
   run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
@@ -80,10 +106,11 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   if (points_on_particles(points)) {
     if (purpose->at)
       points_change(points, first, count, sweep.strain, sweep.stress);
-    else if (!purpose->no_law)
+    else if (!sweep.no_law)
       d->batch_failed[batch] = points_update(points, first, count, sweep.strain, sweep.stress);
   }
   run_phases(region, group->law, group->to, &sweep, purpose);
+  if (purpose->observes) keep_tensors(d, first, count, change);
 }
 
 /** Both ends of bonds whose laws could not be integrated are marked; several threads may mark one end. */
@@ -158,8 +185,23 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
   if (!purpose->at && !purpose->no_law) d->batch_failed[batch] = failed;
 }
 
-static void run_group(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
+/** Brings the window of a group that has one to what a batch reads. By each thread in the order of its batches. */
+static void fill_window(const Region *region, Group *group, int64_t batch, const Purpose *purpose)
 {
+  if (group->ahead < 0) return;
+  const Window *w = &region->window;
+  const int64_t low = w->low[batch - region->first_batch], end = w->high[batch - region->first_batch] + 1;
+  if (group->filled < low) group->filled = low;
+  if (group->filled >= end) return;
+  const Sweep sweep = {
+      .first = group->filled, .last = end, .at = purpose->at, .window = group->window, .window_slices = w->slices};
+  run_phases(region, group->ahead, group->ahead + 1, &sweep, purpose);
+  group->filled = end;
+}
+
+static void run_group(Domain *d, Region *region, Group *group, int64_t batch, const Purpose *purpose, bool send)
+{
+  fill_window(region, group, batch, purpose);
   const bool rows = region->points.on_bonds && (region->points.components == 1 || points_keep_tensors(&region->points));
   if (group->law < 0 || !rows)
     run_places(d, region, group, batch, purpose, send);
@@ -168,8 +210,7 @@ static void run_group(Domain *d, Region *region, const Group *group, int64_t bat
 }
 
 /** Phases of a batch that have waited for lower batches. */
-static void finish_batch(Domain *d, Region *region, const Group *group, int64_t b, const Purpose *purpose,
-                         unsigned writes)
+static void finish_batch(Domain *d, Region *region, Group *group, int64_t b, const Purpose *purpose, unsigned writes)
 {
   run_group(d, region, group, b, purpose, false);
   if (writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
@@ -203,9 +244,10 @@ static bool closes_later(const Domain *d, Later *later, int64_t n)
 }
 
 /** Where bonds have broken: the same again for batches whose families turn out to carry less, with the stresses that laws have given. */
-static void settle(Domain *d, Region *region, const Group *group)
+static void settle(Domain *d, Region *region, Group *group)
 {
   domain_settle(d, region);
+  group->filled = 0;
   TEAM_FOR (n, region->last_batch - region->first_batch) {
     const int64_t b = region->first_batch + n, first = d->batches[b].first * SLICE,
                   places = d->batches[b].last * SLICE - first;
@@ -228,9 +270,10 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
 {
   const Phase *phases = region->type->phases;
   const int64_t from = region->first_batch, count = region->last_batch - from;
-  const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  const bool asks = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  double *window = window_of_thread(&region->window);
   for (int p = 0; p < MOST_PHASES && phases[p].run;) {
-    const Group group = group_from(d, region, p);
+    Group group = group_from(d, region, p, window);
     p = group.to;
     unsigned writes = 0;
     for (int n = group.from; n < group.to; ++n) writes |= phases[n].writes & ~purpose->without;
@@ -240,9 +283,10 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
       phases[group.from].run(region->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
       continue;
     }
-    if (ahead && group.law >= 0) { /* servers work while strains of further points are found */
+    if (asks && group.law >= 0) { /* servers work while strains of further points are found */
       TEAM_FOR (n, count) run_group(d, region, &group, from + n, purpose, true);
       TEAM_SINGLE points_await(&region->points);
+      group.filled = 0;
     }
     if (writes & OF_SHOWN && region->border_count) show_border(region, &group, purpose);
     if (group.by_stripes) {
@@ -251,7 +295,7 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
           run_group(d, region, &group, b, purpose, false);
       continue;
     }
-    Group before = group, after = {group.close, -1, MOST_PHASES, group.to, false};
+    Group before = group, after = {.from = group.close, .law = -1, .close = MOST_PHASES, .to = group.to, .ahead = -1};
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
     const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;
@@ -285,6 +329,7 @@ void domain_forces(Domain *d)
   TEAM_SINGLE
   {
     d->force_sum = 0;
+    d->tensors_are_old = d->leaves_tensors;
     d->failed_place = -1;
     for (int64_t b = 0; b < d->batch_count; ++b) {
       d->force_sum += d->batch_sum[b];
@@ -311,7 +356,19 @@ static void show_states(void *context)
 
 void domain_show_states(Domain *d)
 {
+  d->tensors_are_old |= d->leaves_tensors;
   team_run(show_states, d);
+}
+
+static void find_tensors(void *context)
+{
+  run_all(context, &(Purpose){.observes = true, .without = OF_STATES | OF_SUMS | OF_FORCES});
+}
+
+void domain_find_tensors(Domain *d)
+{
+  team_run(find_tensors, d);
+  d->tensors_are_old = false;
 }
 
 static void remake_forces(void *context)
@@ -348,6 +405,7 @@ bool domain_take_secants(Domain *d, Secants of)
 
 int domain_linearise(Domain *d, Error *error)
 {
+  domain_leave_tensors(d, false);
   for (int r = 0; r < d->region_count; ++r)
     if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
   domain_evaluate(d);

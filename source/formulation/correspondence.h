@@ -63,6 +63,7 @@ struct Correspondence {
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
+  int64_t round; /* sums of a place stand where the place AND this says: -1, or in a window one less than its places */
   int pulls;
   /* What bonds of stored slots read of a neighbour, together (correspondence_stored.h); NULL if there are none. */
   Surroundings around;
@@ -115,6 +116,9 @@ void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
 double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
+bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6]);
+void correspondence_give_way(void *formulation);
+SumsAround correspondence_sums_around(const void *formulation, int64_t slice);
 FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */

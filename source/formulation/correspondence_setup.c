@@ -262,9 +262,10 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   }
   c->pulls = pull_count(c->control);
   for (int kind = 0; kind < c->family->rows.kinds; ++kind) {
-    failed |= !(c->row_displacement[kind] = places_array(6 * places, "row sums", error));
-    failed |= !(c->row_pull[kind] = places_array(pull_count(c->widest) * places, "row sums", error));
+    failed |= !(c->row_displacement[kind] = places_reserved(6 * places, "row sums", error));
+    failed |= !(c->row_pull[kind] = places_reserved(pull_count(c->widest) * places, "row sums", error));
   }
+  c->round = -1;
   if (c->family->stored_slots) {
     failed |= surroundings_create(&c->around, c->family, error) != BRECCIA_OK;
     failed |= !(c->row = places_array(state_length(c->widest) * places, "force states", error));
@@ -288,15 +289,52 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
   shape_gradient(c->family, (int32_t)place, inverse, f);
 }
 
+void correspondence_give_way(void *formulation)
+{
+  Correspondence *c = formulation;
+  for (int k = 0; k < 12; ++k) {
+    double **array = k < 9 ? &c->state[k] : &c->relative[k - 9],
+           *fresh = places_reserved(c->particles->places, "force states", NULL);
+    if (!fresh) continue;
+    places_free(array);
+    *array = fresh;
+  }
+}
+
+SumsAround correspondence_sums_around(const void *formulation, int64_t slice)
+{
+  const Correspondence *c = formulation;
+  const Family *f = c->family;
+  const int64_t kinds = f->rows.kinds, pulls = pull_count(c->widest);
+  SumsAround sums = {.low = slice, .high = slice, .all = kinds * (6 + pulls) * SLICE};
+  if (!f->stored_slots && !c->foreign) sums.most = kinds * pulls * SLICE;
+  for (int64_t slot = f->rows.first[slice]; slot < f->stored[slice]; ++slot) {
+    const int64_t there = family_base(f, slice, slot) / SLICE;
+    if (there < sums.low) sums.low = there;
+    if (there > sums.high) sums.high = there;
+  }
+  return sums;
+}
+
+bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6])
+{
+  const Correspondence *c = formulation;
+  for (int k = 0; k < 6; ++k) strain[k] = c->state[k];
+  for (int k = 0; k < 3; ++k) {
+    stress[k] = c->state[6 + k];
+    stress[3 + k] = c->relative[k];
+  }
+  return !c->fading && !c->foreign;
+}
+
 size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;
   size_t numbers = 9 + 3 + (size_t)hold_components(c->widest) + (hold_is_read(c->widest) ? 3 : 0) + (c->turns ? 9 : 0) +
                    (c->gradients ? 9 : 0);
-  numbers += (size_t)(c->family->rows.kinds * (6 + pull_count(c->widest)) + (c->row ? state_length(c->widest) + 8 : 0));
+  numbers += c->row ? (size_t)state_length(c->widest) + 8 : 0;
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
-         surroundings_bytes(&c->around, c->family) + correspondence_fading_bytes(c) +
-         (size_t)c->particles->count * sizeof(int32_t);
+         surroundings_bytes(&c->around, c->family) + correspondence_fading_bytes(c);
 }
 
 /** Only the bonds of contact itself cross the face (docs/theory.md 2, pairs that a cut parts). */

@@ -92,15 +92,27 @@ LANES_INLINE void resist_lattice(const Correspondence *c, int64_t slice, bool ga
 
 /* ---- bonds by whole rows ---- */
 
-static int64_t show_displacements(const Correspondence *c, const Sweep *sweep)
+/** With the thread's window in the place of sums of all slices, `numbers` of a place and kind. */
+LANES_INLINE Correspondence in_window(const Correspondence *c, const Sweep *sweep, int numbers)
 {
+  Correspondence own = *c;
+  if (!sweep->window) return own;
+  own.round = sweep->window_slices * SLICE - 1;
+  for (int kind = 0; kind < c->family->rows.kinds; ++kind)
+    own.row_displacement[kind] = own.row_pull[kind] = sweep->window + kind * sweep->window_slices * SLICE * numbers;
+  return own;
+}
+
+static int64_t show_displacements(const Correspondence *correspondence, const Sweep *sweep)
+{
+  const Correspondence local = in_window(correspondence, sweep, 6), *c = &local;
   const int64_t first = sweep->first, last = sweep->last;
   const LatticeRows *rows = &c->family->rows;
   if (c->shown) correspondence_show_places(c, first, last);
   for (int64_t slice = first; slice < last; ++slice)
     for (int kind = 0; kind < rows->kinds; ++kind) {
       const RowKind *row = &rows->kind[c->particles->block[slice] * ROW_KINDS + kind];
-      double *out = c->row_displacement[kind] + slice * (6 * SLICE);
+      double *out = c->row_displacement[kind] + (slice * SLICE & c->round) * 6;
       for (int k = 0; k < 3; ++k)
         lattice_row_sums(rows, row, slice, c->particles->displacement[k], out + (2 * k + 1) * SLICE,
                          out + 2 * k * SLICE);
@@ -120,7 +132,8 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
     Lanes sum[3][4] = {{{0}}};
     for (const uint16_t *row = begin; row < end; ++row) {
       const Pattern *pattern = &c->family->patterns[patterns[*row]];
-      const double *there = c->row_displacement[pattern->kind] + (bases[*row] + slice * SLICE) * 6 + LANES * half;
+      const double *there =
+          c->row_displacement[pattern->kind] + ((bases[*row] + slice * SLICE) & c->round) * 6 + LANES * half;
       for (int k = 0; k < 6 / HALVES; ++k)
         __builtin_prefetch(there + (6 + 3 * half + k) * SLICE); /* for the next slice: 5 to 10 % */
       Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
@@ -141,15 +154,16 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
   }
 }
 
-static int64_t sum_states(const Correspondence *c, const Sweep *sweep)
+static int64_t sum_states(const Correspondence *correspondence, const Sweep *sweep)
 {
+  const Correspondence local = in_window(correspondence, sweep, correspondence->pulls), *c = &local;
   const LatticeRows *rows = &c->family->rows;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     int block = c->particles->block[slice];
     const Lattice *lattice = &c->family->lattices[block];
     for (int kind = 0; kind < rows->kinds; ++kind) {
       const RowKind *row = &rows->kind[block * ROW_KINDS + kind];
-      double *out = c->row_pull[kind] + slice * (c->pulls * SLICE);
+      double *out = c->row_pull[kind] + (slice * SLICE & c->round) * c->pulls;
       for (int r = 0; r < 3; ++r) {
         lattice_row_sums(rows, row, slice, c->state[3 * r + lattice->axis], NULL, out + 3 * r * SLICE);
         for (int k = 0; k < 2; ++k)
@@ -173,7 +187,7 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
   const int32_t *bases = c->family->base + entry;
   for (const uint16_t *row = begin; row < end; ++row) {
     const Pattern *pattern = &c->family->patterns[patterns[*row]];
-    const double *there = c->row_pull[pattern->kind] + (bases[*row] + slice * SLICE) * c->pulls;
+    const double *there = c->row_pull[pattern->kind] + ((bases[*row] + slice * SLICE) & c->round) * c->pulls;
     for (int k = 0; k < 9; ++k) __builtin_prefetch(there + (9 + k) * SLICE); /* as above */
     Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
     for (int half = 0; half < HALVES; ++half)
@@ -248,7 +262,8 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Swe
 
 static int64_t deform(const Correspondence *correspondence, const Sweep *sweep)
 {
-  const Correspondence local = *correspondence, *c = &local; /* so that stores are seen not to change it */
+  const Correspondence local = in_window(correspondence, sweep, 6),
+                       *c = &local; /* so that stores are seen not to change it */
   const Sweep own = *sweep;
   for (int64_t slice = own.first; slice < own.last; ++slice)
     if (own.at)
@@ -363,7 +378,8 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
 
 static int64_t resist(const Correspondence *correspondence, const Sweep *sweep)
 {
-  const Correspondence local = *correspondence, *c = &local; /* so that stores are seen not to change it */
+  const Correspondence local = in_window(correspondence, sweep, correspondence->pulls),
+                       *c = &local; /* so that stores are seen not to change it */
   const int64_t last = sweep->last;
   for (int64_t slice = sweep->first; slice < last; ++slice)
     if (c->control == CONTROL_UNIFORM)

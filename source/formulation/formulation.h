@@ -123,6 +123,9 @@ typedef struct Sweep {
   /** NULL: forces of the displacements held. Otherwise a linearised step: changes of forces with changes v of displacements, which
    *  stand in their place, and these are the displacements at which it was linearised. */
   double *const *at;
+  /** Where phases `ahead` write what later ones read, of slice s where s modulo `window_slices` says; NULL: in the formulation's own arrays. */
+  double *window;
+  int64_t window_slices; /* a power of two */
 } Sweep;
 
 typedef struct Phase {
@@ -133,11 +136,19 @@ typedef struct Phase {
   bool
       by_stripes; /* one thread calls it for all batches of a stripe, in their order, so that they may add up what they find in one place */
   bool by_one;    /* one thread calls it once, for few places anywhere */
+  bool
+      ahead; /* what it writes is read by the next phase only: each thread may call it for slices around that one's batch, with Sweep.window */
   /** @return -1, or a place whose law could not be integrated */
   int64_t (*run)(void *formulation, const Sweep *sweep);
 } Phase;
 
 enum { MOST_PHASES = 8 };
+
+typedef struct SumsAround {
+  int64_t low, high; /* first and last slice of which it is read */
+  int64_t all;       /* numbers that a slice takes in the formulation's own arrays */
+  int64_t most;      /* in a window: of the phase that writes most; 0: it takes none */
+} SumsAround;
 
 typedef struct FormulationType FormulationType;
 struct FormulationType {
@@ -248,6 +259,13 @@ struct FormulationType {
   bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Adds what a user should know before a run, as one line, in `units`; NULL: nothing. */
   void (*describe)(const void *formulation, const Units *units, Text *text);
+  /** Arrays over places, of force states and what else each evaluation writes before it reads it: strains and stresses of the state evaluated
+   *  last find room there. No phase that ends before the law is asked reads them. @return false: it has none. NULL: never has */
+  bool (*scratch)(const void *formulation, double *strain[6], double *stress[6]);
+  /** Gives memory of the arrays that `scratch` names back, which are zero until phases write to them again. Together with `scratch`. */
+  void (*give_way)(void *formulation);
+  /** What phases `ahead` write, and which of it the phases that follow them read for a slice. NULL: there are no such phases. */
+  SumsAround (*sums_around)(const void *formulation, int64_t slice);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
 };

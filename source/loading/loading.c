@@ -155,7 +155,9 @@ static bool tied(const Loading *loading)
 /** External forces as they stand when a stage begins: of loads that act already. Others come suddenly, or grow over the first increment. */
 static void take_up_forces(const Loading *loading, Particles *p, double time)
 {
-  for (int k = 0; k < p->motions; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      if (p->external[k][i] != 0) p->external[k][i] = 0; /* what is not written to takes no memory */
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     const bool stays = load->first < loading->stage || load->type->goes_on;
@@ -235,7 +237,8 @@ void loading_state(Loading *loading, StateList *list)
 static void clear(const Selection *selection, Particles *p)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < p->motions; ++k) p->external[k][selection->places[n]] = 0;
+    for (int k = 0; k < p->motions; ++k)
+      if (p->external[k][selection->places[n]] != 0) p->external[k][selection->places[n]] = 0;
 }
 
 /** Loads may overlap: they are cleared first, then added. */

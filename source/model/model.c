@@ -221,7 +221,11 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
                            .force = options->force,
                            .loose = options->loose,
                            .trap = options->trap};
+  model->domain.may_leave_tensors = domain_can_leave_tensors(&model->domain) && !solver_linearises(&spec->solve) &&
+                                    !watches_look_at_tensors(model->watches) && !profiles_count(model->profiles);
+  domain_leave_tensors(&model->domain, true);
   status = solver_create(&model->solver, &model->warnings, error);
+  domain_leave_tensors(&model->domain, false);
   if (!status) status = model_make_schedule(model, true, error);
   for (int p = 0; !status && p < spec->pictures.count; ++p) {
     const PictureSpec *picture = spec->pictures.items[p];
@@ -368,8 +372,12 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   Entry entry;
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   int status = model_begin(model, error);
-  for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
+  for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k) {
+    domain_leave_tensors(&model->domain, k + 1 < steps);
     status = model_advance(model, error);
+  }
+  domain_leave_tensors(&model->domain, false);
+  if (domain_observe(&model->domain, error) && !status) status = BRECCIA_FAILURE;
   solver_put_arrays_back(&model->solver);
   return model_leave(&entry, status, error);
 }

@@ -61,6 +61,8 @@ int model_expect(breccia_model *model, Error *error)
   StepCost cost;
   int status = model_field_names(model, &list, error);
   if (status) return model_leave(&entry, status, error);
+  const bool leaves = d->leaves_tensors;
+  domain_leave_tensors(&model->domain, true); /* as a run does */
   status = solver_measure(&model->solver, &cost, error);
   if (!status) {
     names.fields = list.items;
@@ -71,6 +73,7 @@ int model_expect(breccia_model *model, Error *error)
     model->outlook.least = cost.least;
     model->solver_bytes = cost.bytes;
   }
+  domain_leave_tensors(&model->domain, leaves);
   free(list.items);
   return model_leave(&entry, status, error);
 }

@@ -53,6 +53,7 @@ static int write_results(Run *run, Error *error)
   if (!status) {
     update_peaks(model);
     status = result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
+    domain_stop_observing(&model->domain);
   }
   run->unwritten |= status != 0;
   const double seconds = clock_seconds() - start;
@@ -423,7 +424,9 @@ static int finish(Run *run, int status, Error *error)
   status = host_status(run->host, status, error);
   const int untold = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
   if (untold && !status) status = untold;
+  domain_give_way(&model->domain, true);
   const int undrawn = run->unwritten ? BRECCIA_OK : run_draw_pictures(run, error);
+  domain_give_way(&model->domain, false);
   run->unwritten |= untold != BRECCIA_OK;
   run_tell_outcome(run, status);
   free(problem);
@@ -440,6 +443,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   if (status) return status;
   run.host = &entry.host;
   model->solver.interrupted = wish->interrupted;
+  domain_leave_tensors(&model->domain, true);
   status = folder_make(wish->folder, error);
   if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
@@ -455,6 +459,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
     status = finish(&run, loop(&run, error), error);
   }
   model->solver.interrupted = NULL;
+  domain_leave_tensors(&model->domain, false);
   result_file_destroy(&run.results);
   folder_lock_return(&lock);
   free(run.names.items);

@@ -56,8 +56,8 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
     points->stress[k] = spec->stress[k];
   }
   for (int k = 0; k < 6 && points->components == 6 && !points->shares && !spec->no_tensors; ++k) {
-    points->strain[k] = places_array(points->count, "strains", error);
-    points->stress[k] = places_array(points->count, "stresses", error);
+    points->strain[k] = places_reserved(points->count, "strains", error);
+    points->stress[k] = places_reserved(points->count, "stresses", error);
     if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
   }
   team_each(points->run_count, begin_run, points);

@@ -18,7 +18,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { CHUNK_BYTES = 1 << 18 };
+/* Values go to the file by so many chunks at a time: large bodies have no memory for all of them. */
+enum { CHUNK_BYTES = 1 << 18, CHUNKS_AT_ONCE = 16, ROWS_AT_ONCE = 1 << 16 };
 
 static const char deck_checksum[] = "deck checksum"; /* attribute of the group Breccia */
 
@@ -69,14 +70,14 @@ static int write_cells(hid_t root, int64_t particles)
   return bad;
 }
 
-/** A named history number of all particles; 0 where the material has none of that name. */
-static void history_values(const Domain *d, const char *name, double *values)
+/** A named history number of particles first .. last - 1; 0 where the material has none of that name. */
+static void history_values(const Domain *d, const char *name, int64_t first, int64_t last, double *values)
 {
   for (int m = 0; m < d->material_count; ++m) {
     const int k = history_field_index(&d->materials[m], name);
-    for (int64_t n = 0; n < d->particles->count; ++n) {
+    for (int64_t n = first; n < last; ++n) {
       const int64_t place = d->particles->place_of[n];
-      if (d->material[place / SLICE] == m) values[n] = k < 0 ? 0 : domain_history(d, place, k);
+      if (d->material[place / SLICE] == m) values[n - first] = k < 0 ? 0 : domain_history(d, place, k);
     }
   }
 }
@@ -84,23 +85,49 @@ static void history_values(const Domain *d, const char *name, double *values)
 typedef struct Values {
   const Domain *domain;
   const Column *column;
+  int64_t first;
   double *values;
 } Values;
 
 static void field_value(void *context, int64_t n)
 {
   const Values *v = context;
-  v->column->field->value(v->domain, v->domain->particles->place_of[n], v->values + n * v->column->components);
+  v->column->field->value(v->domain, v->domain->particles->place_of[v->first + n],
+                          v->values + n * v->column->components);
 }
 
-static void field_values(const Domain *d, const Column *column, double *values)
+/** Of particles first .. last - 1. */
+static void field_values(const Domain *d, const Column *column, int64_t first, int64_t last, double *values)
 {
   if (!column->field) {
-    history_values(d, column->name, values);
+    history_values(d, column->name, first, last, values);
     return;
   }
-  Values all = {d, column, values};
-  team_each(d->particles->count, field_value, &all);
+  Values all = {d, column, first, values};
+  team_each(last - first, field_value, &all);
+}
+
+/** Rows of a column that make a chunk. */
+static int64_t chunk_rows(const ResultFile *file, const Column *column)
+{
+  const int64_t rows = CHUNK_BYTES / (column->components * (file->single ? 4 : 8));
+  return rows < file->particles ? rows : file->particles;
+}
+
+/** Adds the present values of a column, whole chunks at a time. */
+static int write_column(hid_t data, const ResultFile *file, const Domain *d, const Column *column, double *values)
+{
+  const int64_t rows = chunk_rows(file, column), begin = (file->writes - 1) * file->particles,
+                end = begin + file->particles;
+  int bad = 0;
+  for (int64_t first = begin, last; first < end && !bad; first = last) {
+    last = (first / rows + CHUNKS_AT_ONCE) * rows;
+    if (last > end) last = end;
+    field_values(d, column, first - begin, last - begin, values);
+    bad = dataset_write(data, column->name, H5T_NATIVE_DOUBLE, column->components, (hsize_t)first,
+                        (hsize_t)(last - first), values);
+  }
+  return bad;
 }
 
 static int create_sets(hid_t root, const ResultFile *file)
@@ -115,9 +142,8 @@ static int create_sets(hid_t root, const ResultFile *file)
     bad |= dataset_create(steps, lists[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k == 4 || k == 5 ? 4 : 1, 64);
   for (int c = 0; c < file->column_count; ++c) {
     const Column *column = &file->columns[c];
-    hsize_t width = (hsize_t)column->components * (file->single ? 4 : 8), rows = CHUNK_BYTES / width;
-    if (rows > (hsize_t)file->particles) rows = (hsize_t)file->particles;
-    bad |= dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
+    bad |= dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components,
+                          (hsize_t)chunk_rows(file, column));
     bad |= attribute_text(data, column->name, "unit", column->unit);
     if (column->components > 1) {
       char names[64] = "";
@@ -133,50 +159,57 @@ static int create_sets(hid_t root, const ResultFile *file)
   return bad | (H5Gclose(offsets) < 0) | (H5Gclose(steps) < 0) | (H5Gclose(data) < 0);
 }
 
+/** Positions, spacings and lattices of particles first .. last - 1, and whether they stand outside the body. */
+typedef struct Geometry {
+  double position[3 * ROWS_AT_ONCE], spacing[ROWS_AT_ONCE];
+  uint8_t lattice[ROWS_AT_ONCE], outside[ROWS_AT_ONCE];
+} Geometry;
+
+static int write_particles(hid_t root, hid_t own, const Domain *d, Geometry *g, int64_t first, int64_t last)
+{
+  const Particles *p = d->particles;
+  for (int64_t n = first; n < last; ++n) {
+    const int64_t place = p->place_of[n], row = n - first;
+    const Lattice *lattice = &d->body.lattices[p->block[place / SLICE]];
+    for (int k = 0; k < 3; ++k) g->position[3 * row + k] = p->position[k][place];
+    g->spacing[row] = lattice->spacing;
+    g->lattice[row] = 0;
+    while (strcmp(lattice_word(g->lattice[row]), lattice->type->name)) ++g->lattice[row];
+    g->outside[row] = body_outside(&d->body, n);
+  }
+  const hsize_t at = (hsize_t)first, rows = (hsize_t)(last - first);
+  int bad = dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, at, rows, g->position);
+  bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, at, rows, g->spacing);
+  if (d->body.margin_of) bad |= dataset_write(own, "Outside", H5T_NATIVE_UINT8, 1, at, rows, g->outside);
+  return bad | dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, at, rows, g->lattice);
+}
+
 static int write_geometry(hid_t root, const Domain *d)
 {
   const Particles *p = d->particles;
-  double *positions = memory_plain(3 * (size_t)p->count, sizeof(double)),
-         *spacings = memory_plain((size_t)p->count, sizeof(double));
-  uint8_t *lattices = memory_plain((size_t)p->count, 1), *outside = memory_plain((size_t)p->count, 1);
-  int bad = !positions || !spacings || !lattices || !outside;
-  for (int64_t n = 0; !bad && n < p->count; ++n) {
-    for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
-    const Lattice *lattice = &d->body.lattices[p->block[p->place_of[n] / SLICE]];
-    spacings[n] = lattice->spacing;
-    lattices[n] = 0;
-    while (strcmp(lattice_word(lattices[n]), lattice->type->name)) ++lattices[n];
-    outside[n] = body_outside(&d->body, n);
-  }
-  if (!bad) {
-    bad |= dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
-    bad |= dataset_create(root, "NumberOfPoints", H5T_STD_I64LE, 1, 1);
-    bad |= dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, 0, (hsize_t)p->count, positions);
-    bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
-    hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    int plane = d->body.dimensions < 3;
-    bad |= attribute_text(own, ".", "version", BRECCIA_VERSION);
-    bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
-    bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
-    bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
-    bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)p->count, spacings);
-    if (d->body.margin_of) {
-      bad |= dataset_create(own, "Outside", H5T_STD_U8LE, 1, 4096);
-      bad |= dataset_write(own, "Outside", H5T_NATIVE_UINT8, 1, 0, (hsize_t)p->count, outside);
-    }
-    bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
-    bad |= dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, 0, (hsize_t)p->count, lattices);
-    Text names = {0};
-    for (int k = 0; lattice_word(k); ++k) text_add(&names, "%s%s", k ? ";" : "", lattice_word(k));
-    bad |= attribute_text(own, "Lattice", "names", text_words(&names));
-    text_free(&names);
-    bad |= H5Gclose(own) < 0;
-    bad |= H5Fclose(file) < 0;
-  }
-  free(positions);
-  free(spacings);
-  free(lattices);
-  free(outside);
+  Geometry *geometry = memory_plain(1, sizeof *geometry);
+  if (!geometry) return 1;
+  int bad = dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
+  bad |= dataset_create(root, "NumberOfPoints", H5T_STD_I64LE, 1, 1);
+  bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
+  hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  int plane = d->body.dimensions < 3;
+  bad |= attribute_text(own, ".", "version", BRECCIA_VERSION);
+  bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
+  bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
+  bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
+  if (d->body.margin_of) bad |= dataset_create(own, "Outside", H5T_STD_U8LE, 1, 4096);
+  bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
+  for (int64_t first = 0; first < p->count && !bad; first += ROWS_AT_ONCE)
+    bad = write_particles(root, own, d, geometry, first,
+                          first + ROWS_AT_ONCE < p->count ? first + ROWS_AT_ONCE : p->count);
+  Text names = {0};
+  for (int k = 0; lattice_word(k); ++k) text_add(&names, "%s%s", k ? ";" : "", lattice_word(k));
+  bad |= attribute_text(own, "Lattice", "names", text_words(&names));
+  text_free(&names);
+  bad |= H5Gclose(own) < 0;
+  bad |= H5Fclose(file) < 0;
+  free(geometry);
   return bad;
 }
 
@@ -365,14 +398,9 @@ static int create_state(hid_t h5, const ResultFile *file, int64_t k)
 static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
 {
   hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
-  double *values = memory_plain(MOST_COMPONENTS * (size_t)file->particles, sizeof(double));
+  double *values = memory_plain(2 * CHUNKS_AT_ONCE * CHUNK_BYTES, 1); /* twice: where chunks have single precision */
   int bad = !values || root < 0 || data < 0;
-  for (int c = 0; c < file->column_count && !bad; ++c) {
-    const Column *column = &file->columns[c];
-    field_values(d, column, values);
-    bad = dataset_write(data, column->name, H5T_NATIVE_DOUBLE, column->components,
-                        (hsize_t)((file->writes - 1) * file->particles), (hsize_t)file->particles, values);
-  }
+  for (int c = 0; c < file->column_count && !bad; ++c) bad = write_column(data, file, d, &file->columns[c], values);
   int64_t fresh = d->broken_count - file->broken_written, *rows = memory_plain((size_t)fresh * 3 + 3, sizeof(int64_t));
   if (!values || !rows) h5->error = ENOMEM;
   bad |= !rows;

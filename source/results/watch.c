@@ -543,6 +543,13 @@ int watches_count(const Watches *watches)
   return watches->count;
 }
 
+bool watches_look_at_tensors(const Watches *watches)
+{
+  bool looks = false;
+  for (int k = 0; k < watches->count; ++k) looks |= watches->items[k].kind == &stress_kind;
+  return looks;
+}
+
 void watches_destroy(Watches **watches)
 {
   if (!watches || !*watches) return;

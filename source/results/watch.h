@@ -47,6 +47,8 @@ int watches_column(const Watches *watches, int k, int c, char *name, size_t size
 /** Name of the k-th history. */
 const char *watches_name(const Watches *watches, int k);
 int watches_count(const Watches *watches);
+/** Whether one of them tells strains and stresses. */
+bool watches_look_at_tensors(const Watches *watches);
 /** Path of the k-th file. */
 const char *watches_path(const Watches *watches, int k);
 void watches_destroy(Watches **watches);

@@ -16,14 +16,14 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
   *a = (Aside){.tensors = memory_zeroed((size_t)d->region_count, sizeof *a->tensors, label, error),
                .region_count = d->region_count};
   for (int k = 0; k < d->particles->motions; ++k) {
-    failed |= !(a->displacement[k] = places_array(places, label, error));
-    failed |= !(a->internal[k] = places_array(places, label, error));
+    failed |= !(a->displacement[k] = places_reserved(places, label, error));
+    failed |= !(a->internal[k] = places_reserved(places, label, error));
   }
   if (!a->tensors || failed) return BRECCIA_FAILURE;
   for (int r = 0; r < d->region_count; ++r) {
     AsideTensors *t = &a->tensors[r];
     const Points *points = &d->regions[r].points;
-    if (!points_keep_tensors(points)) continue;
+    if (!points_keep_tensors(points) || d->leaves_tensors) continue;
     const int64_t rows = rows_of(points, places);
     while (d->regions[t->shares].points.strain[0] != points->strain[0]) ++t->shares;
     for (int k = 0; k < 6 && t->shares == r; ++k) {
@@ -74,7 +74,7 @@ void aside_exchange(Aside *a, Domain *d)
   for (int r = 0; r < d->region_count; ++r) {
     AsideTensors *t = &a->tensors[r];
     Points *points = &d->regions[r].points, *first = &d->regions[t->shares].points;
-    for (int k = 0; k < 6 && points_keep_tensors(points); ++k) {
+    for (int k = 0; k < 6 && a->tensors[t->shares].strain[5] && points_keep_tensors(points); ++k) {
       if (t->shares == r) {
         swap(&points->strain[k], &t->strain[k]);
         swap(&points->stress[k], &t->stress[k]);

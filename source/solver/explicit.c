@@ -133,7 +133,7 @@ static int create(Solver *run, Error *error)
   ledger_begin(&run->ledger, d);
   int failed = 0;
   for (int k = 0; k < d->particles->motions; ++k)
-    failed |= !(s->acceleration[k] = places_array(d->particles->places, "accelerations", error));
+    failed |= !(s->acceleration[k] = places_reserved(d->particles->places, "accelerations", error));
   s->sums = memory_zeroed((size_t)d->batch_count, sizeof *s->sums, "energy sums", error);
   int64_t parts = 0;
   for (int n = 0; n < run->loading->constraint_count; ++n)
@@ -150,9 +150,25 @@ static int create(Solver *run, Error *error)
 static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  const size_t begun = 2 * (size_t)s->row_count * sizeof(double) * (size_t)s->domain->particles->places;
+  const int arrays = s->domain->may_leave_tensors ? 0 : 2 * s->row_count;
+  const size_t begun = (size_t)arrays * sizeof(double) * (size_t)s->domain->particles->places;
   return vectors_bytes(s->domain->particles) + begun + stiffness_damping_bytes(&s->viscous, s->domain) +
          face_work_bytes(&s->face_work) + solver_kept_bytes(run, KEPT_BUT_MOTION);
+}
+
+static void give_up_begun(Explicit *s)
+{
+  explicit_put_arrays_back(s);
+  for (int k = 0; k < MOTIONS; ++k) {
+    places_free(&s->begun.displacement[k]);
+    places_free(&s->begun.velocity[k]);
+  }
+}
+
+static void give_up_room(Explicit *s)
+{
+  give_up_begun(s);
+  solver_forget(s->domain, &s->before);
 }
 
 /** Room for the state that a step begins with; only while steps are taken, as pictures and the like need room afterwards. */
@@ -160,22 +176,16 @@ static int make_room(Explicit *s, Solver *run, Error *error)
 {
   static const char label[] = "motion before a step";
   int failed = solver_keep(run, KEPT_BUT_MOTION, &s->before, error);
+  s->in_place = false;
+  if (s->domain->leaves_tensors) give_up_begun(s);
+  s->in_place = s->domain->leaves_tensors;
+  if (s->in_place) return failed ? BRECCIA_FAILURE : BRECCIA_OK;
   for (int r = 0; r < s->row_count && !failed && !s->begun.displacement[s->rows[r]]; ++r) {
     const int64_t places = s->domain->particles->places;
     failed = !(s->begun.velocity[s->rows[r]] = places_array(places, label, error)) ||
              !(s->begun.displacement[s->rows[r]] = places_array(places, label, error));
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
-}
-
-static void give_up_room(Explicit *s)
-{
-  explicit_put_arrays_back(s);
-  for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&s->begun.displacement[k]);
-    places_free(&s->begun.velocity[k]);
-  }
-  solver_forget(s->domain, &s->before);
 }
 
 static void put_arrays_back(Solver *run)
@@ -238,6 +248,13 @@ static void describe_stage(const void *section, const char *time, Text *text)
     text_add(text, "%g %s", spec->end_time, time);
   damping_describe(&spec->damping, time, text);
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
+}
+
+/** For the period of its vibration, and for what stiffness damps. */
+static bool linearises(const void *section)
+{
+  const ExplicitSpec *spec = section;
+  return spec->quasi_static || spec->damping.stiffness > 0;
 }
 
 static double damping(const void *section)
@@ -443,6 +460,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .destroy = destroy,
                                     .plan = explicit_plan,
                                     .check = explicit_check,
+                                    .linearises = linearises,
                                     .plan_again = explicit_plan_again,
                                     .begin = begin,
                                     .advance = advance,

@@ -36,7 +36,10 @@ typedef struct Explicit {
   struct {
     double *displacement[MOTIONS], *velocity[MOTIONS];
   } begun;
-  bool exchanged;           /* the particles have arrays of `begun` */
+  bool exchanged; /* the particles have arrays of `begun` */
+  /* Steps of large elastic bodies write over the motion that they begin with: all that can go wrong with them is that they grow beyond all bounds, and what is
+   * given back then is that motion but for roundings. */
+  bool in_place;
   StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
@@ -72,6 +75,9 @@ double explicit_time_after_step(const Explicit *solver);
 
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
+
+/** Motion before a step that has come to its forces, from that in its middle, where steps are taken in place. By one thread. */
+void explicit_step_back(Explicit *s);
 
 /** The arrays of the particles' motion change places with those of `begun`. By one thread. */
 void explicit_exchange_motion(Explicit *solver);

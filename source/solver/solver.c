@@ -346,6 +346,17 @@ bool solver_stage_rests(const Solver *s, int64_t stage)
   return types[type_of(stage_of(s, stage))]->rests;
 }
 
+bool solver_linearises(const SectionList *stages)
+{
+  bool linearises = stages->count == 0;
+  for (int k = 0; k < stages->count; ++k) {
+    const SolveSpec *stage = stages->items[k];
+    const SolverType *type = types[type_of(stage)];
+    linearises |= !type->linearises || type->linearises(stage->of[type_of(stage)]);
+  }
+  return linearises;
+}
+
 double solver_stage_steady(const Solver *s, int64_t stage)
 {
   const int type = type_of(stage_of(s, stage));

@@ -85,6 +85,8 @@ struct SolverType {
   int (*check)(Solver *solver, const void *spec, Error *error);
   /** Whether a stage with this section finds the factors of controlled loads. May be NULL: it does not. */
   bool (*controls)(const void *spec);
+  /** Whether a stage with this section asks for linearised steps. NULL: it does. */
+  bool (*linearises)(const void *spec);
   /** Other times are asked for. */
   void (*plan_again)(Solver *solver);
   /** Forces and accelerations of the state held, before the first step. */
@@ -145,6 +147,9 @@ double solver_time_in_motion(const Solver *solver);
 
 /** SolverType.damping of a stage, or 0. @param[out] node  of the deck, where it is said */
 double solver_stage_damping(const Solver *solver, int64_t stage, const Node **node);
+
+/** Whether some of the stages asks for linearised steps. @param[in] stages  of SolveSpec */
+bool solver_linearises(const SectionList *stages);
 
 /** SolverType.steady of a stage. */
 double solver_stage_steady(const Solver *solver, int64_t stage);

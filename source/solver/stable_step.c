@@ -69,28 +69,63 @@ static void normalize(void *context)
     TEAM_FOR (i, n->domain->particles->places) n->previous[k][i] /= n->beta;
 }
 
+static bool are_zero(const Particles *p, double *const *rows)
+{
+  bool zero = true;
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places && zero; ++i) zero = rows[k][i] == 0;
+  return zero;
+}
+
+/** Rows of zeros change places with others, of which no memory is taken as long as nothing is written to them. */
+static void put_aside(const Particles *p, double **rows, double **reserved)
+{
+  for (int k = 0; k < p->motions; ++k) {
+    double *own = rows[k];
+    rows[k] = reserved[k];
+    reserved[k] = own;
+  }
+}
+
+static void take_back(const Particles *p, double **rows, double **reserved)
+{
+  for (int k = 0; k < p->motions; ++k) memset(reserved[k], 0, sizeof(double) * (size_t)p->places);
+  put_aside(p, rows, reserved);
+}
+
 int stable_step(Domain *d, double *step, Error *error)
 {
   const int64_t places = d->particles->places;
   const int motions = d->particles->motions;
   Aside aside;
-  double *base_f[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
+  double *own_f[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
   int failed = aside_create(&aside, d, "stable step", error) != BRECCIA_OK;
   for (int k = 0; k < motions; ++k) {
-    failed |= !(base_f[k] = places_array(places, "stable step", error));
-    for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
+    failed |= !(own_f[k] = places_reserved(places, "stable step", error));
+    for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_reserved(places, "stable step", error));
   }
   if (failed) goto done;
 
-  double *const *u = d->particles->displacement;
-  const bool elastic = domain_in_elastic_stage(d);
+  /* Forces of elastic bodies follow from displacements, and are evaluated before steps begin. */
+  const bool lean = d->leaves_tensors, at_zero = lean && are_zero(d->particles, d->particles->displacement),
+             at_rest = at_zero && are_zero(d->particles, d->particles->velocity);
+  double *const *u = d->particles->displacement, *const *base_f = lean ? d->particles->internal : own_f;
+  const bool elastic = domain_in_elastic_stage(d), old = d->tensors_are_old;
   domain_set_elastic_stage(d, true);
   Iteration it = {.domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1]};
-  for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
-  aside_exchange(&aside, d);
-  domain_evaluate(d);
-  aside_exchange(&aside, d);
-  for (int k = 0; k < motions; ++k) memcpy(base_f[k], aside.internal[k], sizeof(double) * (size_t)places);
+  if (lean)
+    domain_evaluate(d);
+  else {
+    for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
+    aside_exchange(&aside, d);
+    domain_evaluate(d);
+    aside_exchange(&aside, d);
+    for (int k = 0; k < motions; ++k) memcpy(own_f[k], aside.internal[k], sizeof(double) * (size_t)places);
+  }
+  const bool bears_nothing = at_zero && are_zero(d->particles, d->particles->internal);
+  if (at_zero) put_aside(d->particles, d->particles->displacement, aside.displacement);
+  if (bears_nothing) put_aside(d->particles, d->particles->internal, aside.internal);
+  if (at_rest) put_aside(d->particles, d->particles->velocity, v[0]);
 
   uint64_t seed = 1;
   for (int k = 0; k < motions; ++k)
@@ -119,7 +154,11 @@ int stable_step(Domain *d, double *step, Error *error)
     it.current = spare;
   }
   domain_set_elastic_stage(d, elastic);
+  if (at_zero) take_back(d->particles, d->particles->displacement, aside.displacement);
+  if (bears_nothing) take_back(d->particles, d->particles->internal, aside.internal);
+  if (at_rest) take_back(d->particles, d->particles->velocity, v[0]);
   domain_show_states(d); /* bonds that break next are judged by what particles show */
+  d->tensors_are_old = old || d->leaves_tensors;
   if (!isfinite(largest) || largest < 0)
     failed = error_add(error, BRECCIA_FAILURE,
                        "the stable time step could not be found: the internal forces are not those "
@@ -130,7 +169,7 @@ int stable_step(Domain *d, double *step, Error *error)
 done:
   aside_destroy(&aside);
   for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&base_f[k]);
+    places_free(&own_f[k]);
     for (int n = 0; n < VECTORS; ++n) places_free(&v[n][k]);
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;

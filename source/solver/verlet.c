@@ -15,6 +15,7 @@ static void exchange(double **a, double **b)
 void explicit_exchange_motion(Explicit *s)
 {
   Particles *p = s->domain->particles;
+  if (s->in_place) return;
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
     exchange(&p->displacement[k], &s->begun.displacement[k]);
@@ -36,6 +37,19 @@ void explicit_put_arrays_back(Explicit *s)
   explicit_exchange_motion(s);
 }
 
+void explicit_step_back(Explicit *s)
+{
+  const Particles *p = s->domain->particles;
+  const double dt = s->clock->time_step, c = explicit_mass_damping(s);
+  for (int r = 0; r < s->row_count; ++r) {
+    const int k = s->rows[r];
+    for (int64_t i = 0; i < p->places; ++i) {
+      p->displacement[k][i] -= dt * p->velocity[k][i];
+      p->velocity[k][i] = (p->velocity[k][i] - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
+    }
+  }
+}
+
 BRECCIA_CLONES
 static void kick_and_drift(Explicit *s, int64_t batch)
 {
@@ -46,8 +60,10 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
+    const double *displacement = s->in_place ? p->displacement[k] : s->begun.displacement[k],
+                 *velocity = s->in_place ? p->velocity[k] : s->begun.velocity[k];
     for (int64_t i = first; i < last; i += LANES) {
-      Lanes v = lanes_load(s->begun.velocity[k] + i), fi = lanes_load(p->internal[k] + i);
+      Lanes v = lanes_load(velocity + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i);
       Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
       Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(counted + i);
@@ -56,7 +72,7 @@ static void kick_and_drift(Explicit *s, int64_t batch)
       damping += drag * work;
       between -= lanes_load(p->inertia[k] + i) * lanes_load(counted + i) * gain * gain;
       if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
-      lanes_store(p->displacement[k] + i, lanes_load(s->begun.displacement[k] + i) + du);
+      lanes_store(p->displacement[k] + i, lanes_load(displacement + i) + du);
       lanes_store(p->velocity[k] + i, half);
     }
   }

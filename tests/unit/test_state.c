@@ -1,5 +1,6 @@
 /* The state of a run as a list of rows: what is copied and given back leads to the same steps, to the bit, and what a step that fails
  * has tried leaves nothing behind. */
+#include "model/model.h"
 #include "support.h"
 
 #include <signal.h>
@@ -298,6 +299,120 @@ static void a_step_that_fails_gives_back_every_bit(void **state)
   }
 }
 
+static void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name)
+{
+  for (int k = 0; k < rows; ++k)
+    if (memcmp(a[k], b[k], sizeof(double) * (size_t)places)) fail_msg("%s %d is not the same", name, k);
+}
+
+/** A bar that is pulled. */
+static breccia_model *pulled_bar(const char *strain, const char *more)
+{
+  char deck[800];
+  snprintf(deck, sizeof deck,
+           "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+           "body: {b: {material: m, spacing: 1, shape: {box: {particles: [21, 7, 9]}}}}\n"
+           "peridynamics: {formulation: correspondence, strain: %s}\n"
+           "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.3, 0.1, 0]}]\n%s",
+           strain, more);
+  return model_of(deck);
+}
+
+/** Evaluations of elastic bodies may leave strains and stresses out: whoever looks finds the bits that they would have written, energies, too, and force
+ *  states are as they were when he has gone. */
+static void strains_that_are_left_out_are_found_to_the_same_bits(void **state)
+{
+  (void)state;
+  for (int finite = 0; finite < 2; ++finite) {
+    const char *strain = finite ? "green-lagrange" : "small", *solve = "solve: {explicit: {steps: 40}}\n";
+    breccia_model *leaving = pulled_bar(strain, solve), *keeping = pulled_bar(strain, solve);
+    Domain *d = &leaving->domain, *with = &keeping->domain;
+    const Particles *p = d->particles, *q = with->particles;
+    assert_true(d->may_leave_tensors);
+    with->may_leave_tensors = false;
+    advance(leaving, 7);
+    advance(keeping, 7);
+    assert_same_numbers(d->strain, with->strain, 6, p->places, "strain after steps");
+    assert_same_numbers(d->stress, with->stress, 6, p->places, "stress after steps");
+    domain_leave_tensors(d, true);
+    domain_evaluate(d);
+    assert_true(d->tensors_are_old);
+    assert_true(d->strain[0] != d->own_strain[0]);
+    assert_true(domain_stored_energy(d) == domain_stored_energy(with));
+    for (int64_t slot = d->family.first[9]; slot < d->family.first[10]; slot += 7) {
+      double force[3], same[3];
+      domain_bond_force(d, 9, slot, 3, force);
+      domain_bond_force(with, 9, slot, 3, same);
+      for (int k = 0; k < 3; ++k) assert_true(force[k] == same[k]);
+    }
+    assert_int_equal(domain_observe(d, NULL), BRECCIA_OK);
+    assert_same_numbers(d->strain, with->strain, 6, p->places, "strain");
+    assert_same_numbers(d->stress, with->stress, 6, p->places, "stress");
+    assert_true(with->stress[0][p->place_of[p->count / 2]] > 1e-3);
+    domain_stop_observing(d);
+    domain_leave_tensors(d, false);
+    assert_int_equal(domain_observe(d, NULL), BRECCIA_OK);
+    assert_same_numbers(d->stress, with->stress, 6, p->places, "stress as kept again");
+    advance(leaving, 20);
+    advance(keeping, 20);
+    assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
+    assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
+    assert_same_numbers(p->internal, q->internal, 3, p->places, "force");
+    breccia_model_destroy(&leaving);
+    breccia_model_destroy(&keeping);
+  }
+}
+
+/** Steps that leave strains and stresses out are taken in place, to the same bits, and one that fails gives back the motion that it began with but for roundings. */
+static void steps_in_place_lead_to_the_same_bits(void **state)
+{
+  (void)state;
+  const char *solve = "solve: {explicit: {steps: 40, damping: 0.02}}\n";
+  breccia_model *in_place = pulled_bar("green-lagrange", solve), *apart = pulled_bar("green-lagrange", solve);
+  const Particles *p = in_place->domain.particles, *q = apart->domain.particles;
+  apart->domain.may_leave_tensors = false;
+  domain_leave_tensors(&in_place->domain, true);
+  Entry entry;
+  assert_int_equal(model_enter(in_place, &entry, NULL), BRECCIA_OK);
+  assert_int_equal(model_begin(in_place, NULL), BRECCIA_OK);
+  for (int k = 0; k < 30; ++k) assert_int_equal(model_advance(in_place, NULL), BRECCIA_OK);
+  advance(apart, 30);
+  assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
+  assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
+  assert_true(in_place->solver.ledger.kinetic == apart->solver.ledger.kinetic);
+  const int32_t i = p->place_of[p->count / 2];
+  assert_true(fabs(p->velocity[0][i]) > 1e-3);
+  const double u = p->displacement[0][i + 8], v = p->velocity[0][i + 8];
+  p->velocity[0][i] = NAN; /* the next step comes to no numbers */
+  assert_int_equal(model_advance(in_place, NULL), BRECCIA_FAILURE);
+  assert_near(p->displacement[0][i + 8], u, 1e-14);
+  assert_near(p->velocity[0][i + 8], v, 1e-14);
+  model_leave(&entry, BRECCIA_OK, NULL);
+  breccia_model_destroy(&in_place);
+  breccia_model_destroy(&apart);
+}
+
+/** Stages that linearise, what breaks, and watches of stresses need them in every step. */
+static void strains_are_kept_where_steps_need_them(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *more;
+    bool leaves;
+  } cases[] = {{"solve: {explicit: {steps: 4}}\nwatch: {e: {energy: yes}}\n", true},
+               {"solve: {explicit: {steps: 4, stiffness damping: 1e-3}}\n", false},
+               {"solve: {explicit: {quasi-static: {period: 10}}}\n", false},
+               {"solve: [{static: {increments: 2}}, {explicit: {steps: 4}}]\n", false},
+               {"solve: {explicit: {steps: 4}}\nfailure: {critical stretch: 0.1}\n", false},
+               {"solve: {explicit: {steps: 4}}\ncontact: {}\n", false},
+               {"solve: {explicit: {steps: 4}}\nwatch: {s: {stress and strain of: {face: x+}}}\n", false}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = pulled_bar("small", cases[k].more);
+    if (m->domain.may_leave_tensors != cases[k].leaves) fail_msg("%s", cases[k].more);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void rows_have_names_of_their_own_and_known_units(void **state)
 {
   (void)state;
@@ -325,6 +440,9 @@ int main(void)
       cmocka_unit_test(so_it_does_where_bonds_remember_and_bodies_meet),
       cmocka_unit_test(so_it_does_where_laws_are_in_servers),
       cmocka_unit_test(a_step_that_fails_gives_back_every_bit),
+      cmocka_unit_test(strains_that_are_left_out_are_found_to_the_same_bits),
+      cmocka_unit_test(steps_in_place_lead_to_the_same_bits),
+      cmocka_unit_test(strains_are_kept_where_steps_need_them),
       cmocka_unit_test(rows_have_names_of_their_own_and_known_units),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -88,5 +88,6 @@ int face_balance(Face *face, const Load *load, const Particles *p, const double 
 void face_push(const Face *face, Particles *p, const double traction[3])
 {
   TEAM_FOR (n, face->count)
-    for (int k = 0; k < 3; ++k) p->external[k][face->place[n]] += traction[k] * face->per_volume[n];
+    for (int k = 0; k < 3; ++k)
+      if (traction[k] != 0) p->external[k][face->place[n]] += traction[k] * face->per_volume[n];
 }

@@ -28,7 +28,9 @@ void load_push(const Load *load, Particles *p, const double uniform[3], const do
 {
   TEAM_FOR (n, load->selection.count) {
     const int32_t place = load->selection.places[n];
-    for (int k = 0; k < 3; ++k) p->external[k][place] += uniform[k] + per_density[k] * p->density[place];
+    for (int k = 0; k < 3; ++k)
+      if (uniform[k] != 0 || per_density[k] != 0)
+        p->external[k][place] += uniform[k] + per_density[k] * p->density[place];
   }
 }
 

@@ -1,0 +1,99 @@
+/* Sums along lattice rows that threads make of some planes at a time, each in memory of its own, lead to the bits to which sums of the whole body lead. */
+#include "domain/regions.h"
+#include "support.h"
+
+/** A plate that is pulled and sheared at one end. */
+static breccia_model *plate_on(int threads, const char *law, const char *peridynamics, const char *more)
+{
+  return model_on(threads,
+                  "materials: {m: {model: %s, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+                  "body: {b: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [96, 5, 90]}}}}\n"
+                  "peridynamics: {formulation: correspondence, %s}\n%s"
+                  "loads: [{on: {face: z-}, displacement: [0, 0, 0]}, {on: {face: z+}, velocity: [0.1, 0, 0.6]},\n"
+                  "        {on: {face: x+}, traction: [0.02, 0, 0]}]\n"
+                  "solve: {explicit: {steps: 40}}\n",
+                  law, peridynamics, more);
+}
+
+static void assert_same_numbers(double *const *a, double *const *b, int64_t places, const char *what)
+{
+  for (int k = 0; k < 3; ++k)
+    if (memcmp(a[k], b[k], sizeof(double) * (size_t)places)) fail_msg("%s", what);
+}
+
+static void windows_lead_to_the_same_bits(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *law, *peridynamics;
+  } cases[] = {{"elastic", "strain: green-lagrange"},
+               {"elastic", "strain: small, zero-energy control: {wan: 0.1}"},
+               {"elastic", "horizon: 4.015 spacings"}, /* rows of several kinds */
+               {"j2, yield stress: 0.5", "strain: green-lagrange"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *whole = plate_on(1, cases[k].law, cases[k].peridynamics, "");
+    whole->domain.regions[0].window.threads = 0;
+    step_surely(whole, 8);
+    const Particles *q = whole->domain.particles;
+    assert_true(fabs(q->internal[2][q->place_of[q->count - 300]]) > 1e-9);
+    for (int threads = 1; threads <= 3; ++threads) {
+      breccia_model *some = plate_on(threads, cases[k].law, cases[k].peridynamics, "");
+      const Particles *p = some->domain.particles;
+      assert_in_range(some->domain.regions[0].window.threads, 3, 1000);
+      step_surely(some, 8);
+      assert_same_numbers(p->displacement, q->displacement, p->places, cases[k].peridynamics);
+      assert_same_numbers(p->velocity, q->velocity, p->places, cases[k].peridynamics);
+      assert_same_numbers(p->internal, q->internal, p->places, cases[k].peridynamics);
+      breccia_model_destroy(&some);
+    }
+    breccia_model_destroy(&whole);
+  }
+}
+
+static breccia_model *elastic_plate(int threads)
+{
+  return plate_on(threads, "elastic", "strain: green-lagrange", "");
+}
+
+static breccia_model *plastic_plate(int threads)
+{
+  return plate_on(threads, "j2, yield stress: 0.5", "strain: small", "");
+}
+
+static void so_do_numbers_of_threads_and_restarts(void **state)
+{
+  (void)state;
+  assert_same_bits_by_threads_and_restart(elastic_plate, 3, 6);
+  assert_same_bits_by_threads_and_restart(plastic_plate, 3, 6);
+}
+
+/** More threads than windows pay for share sums of the whole body; so do those of bodies whose bonds may break, and of bodies of which windows would hold most. */
+static void others_work_without(void **state)
+{
+  (void)state;
+  breccia_model *m = plate_on(2, "elastic", "strain: small", "");
+  Window *w = &m->domain.regions[0].window;
+  assert_true(window_of_thread(w) != NULL);
+  assert_true(w->threads * w->slices <= m->domain.particles->slices / 2);
+  w->threads = 1;
+  step_surely(m, 3);
+  breccia_model_destroy(&m);
+  m = plate_on(1, "elastic", "strain: small", "failure: {critical stretch: 0.5}\n");
+  assert_int_equal(m->domain.regions[0].window.threads, 0);
+  breccia_model_destroy(&m);
+  m = model_of("%sbody: {b: {material: m, spacing: 1, shape: {box: {particles: [8, 8, 8]}}}}\n"
+               "peridynamics: {formulation: correspondence}\nsolve: {explicit: {steps: 4}}\n",
+               SOFT_SOLID);
+  assert_int_equal(m->domain.regions[0].window.threads, 0);
+  breccia_model_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(windows_lead_to_the_same_bits),
+      cmocka_unit_test(so_do_numbers_of_threads_and_restarts),
+      cmocka_unit_test(others_work_without),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
