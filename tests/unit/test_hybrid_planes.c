@@ -82,7 +82,7 @@ static void planes_exert_what_walked_bonds_do(void **state)
 {
   (void)state;
   static const char *const strains[] = {"green-lagrange", "small"};
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
     const char *strain = strains[n % 2], *horizon = n < 2 ? "1.5" : "2.015";
     const bool turned = n == 1 || n == 2;
     breccia_model *m = body(false, horizon, strain, turned), *w = body(true, horizon, strain, turned);
@@ -160,7 +160,7 @@ static void rows_of_any_length_exert_what_walked_bonds_do(void **state)
 {
   (void)state;
   static const int size[][3] = {{70, 23, 12}, {16, 16, 16}};
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
     const int *cells = size[n / 2];
     breccia_model *model[3]; /* eight lanes, four, walked */
     for (int k = 0; k < 3; ++k) {
@@ -204,11 +204,13 @@ static breccia_model *torn(int threads)
 static void breaking_has_the_same_bits_by_threads_and_after_a_restart(void **state)
 {
   (void)state;
-  breccia_model *m = torn(1);
-  const int64_t before = planar(formulation_of(m));
-  step_surely(m, 60);
-  assert_true(m->domain.broken_count > 20 && planar(formulation_of(m)) < before);
-  breccia_model_destroy(&m);
+  if (!under_sanitizers()) {
+    breccia_model *m = torn(1);
+    const int64_t before = planar(formulation_of(m));
+    step_surely(m, 60);
+    assert_true(m->domain.broken_count > 20 && planar(formulation_of(m)) < before);
+    breccia_model_destroy(&m);
+  }
   assert_same_bits_by_threads_and_restart(torn, 45, 60);
 }
 
