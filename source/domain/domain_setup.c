@@ -192,11 +192,20 @@ static int count_volumes(Domain *d, Error *error)
   return BRECCIA_OK;
 }
 
+/** Whether bonds may break: where a deck tells a criterion, and those of laws that soften. */
+static bool may_break(const Domain *d, const DomainSpec *spec)
+{
+  bool hookean = true;
+  for (int k = 0; k < d->material_count; ++k) hookean &= material_is_hookean(&d->materials[k]);
+  return spec->failure || !hookean;
+}
+
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
 {
   Particles *p = d->particles;
   d->material = memory_zeroed((size_t)p->slices, sizeof(int32_t), "materials of slices", error);
-  if (spec->failure && !(d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error)))
+  if (may_break(d, spec) &&
+      !(d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error)))
     return BRECCIA_FAILURE;
   d->is_torn = memory_zeroed((size_t)p->places, 1, "torn families", error);
   d->suspects = memory_zeroed((size_t)p->slices, 1, "suspect slices", error);
@@ -332,7 +341,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   status = family_create(&d->family, &d->body, &family, told);
   if (tell_at(reader, section_node(pd, "horizon"), status, &told)) return status;
   CHECK(family_is_valid(&d->family));
-  if (spec->failure) team_each(d->particles->places, weigh_family, d);
+  if (d->family_volume) team_each(d->particles->places, weigh_family, d);
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
   if (may_give_up && d->region_count > 1)
