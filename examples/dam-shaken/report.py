@@ -108,7 +108,7 @@ with ThreadPoolExecutor(2) as pool:
     dams = {name: future.result() for name, future in futures.items()}
 order = sorted((name for name in dams if name != "elastic"), key=lambda name: ("rock" in name, "motion" in name, "same" in name))
 between("cracks", table(
-    ["", "heel opens", "crack along the base", "neck opens downstream", "upstream", "height downstream", "first upstream", f"within {BAND} m of published"],
+    ["", "heel opens", "crack along the base", "neck opens downstream", "upstream", "height downstream", "upstream, where it opens first", f"within {BAND} m of published"],
     [dams[name].row(name) for name in order] +
     [["published, Koyna record, with water", "1.82 s", "17 m", "2.46 s", "by 2.70 s", "66.5 m, the kink", "lower", "–"],
      ["published, Koyna record, without water's mass", "1.89 s", "13 m", "3.91 s", "4.55 s", "66.5 m, the kink", "lower", "–"]]))

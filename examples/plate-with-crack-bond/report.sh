@@ -12,7 +12,6 @@ fi
 # Value of a column at the first row whose other column is at least something.
 first() { awk -F, -v w="$2" -v c="$3" -v l="$4" 'NR > 1 && $c >= l {print $w; exit}' "$1"; }
 severed() { t=$(first "$1/top.csv" 2 4 0.02); if [ -n "$t" ]; then printf "%.4f" "$t"; else echo "not by 0.092"; fi; }
-imbalance() { awk -v share="$(summary "$1" imbalance)" 'BEGIN {if (share < 1e-7) print "less than 1e-5"; else printf "%.1g", 100 * share}'; }
 first_break() { sed -n 's/.*"first_broken_bond": {"step": [0-9]*, "time": \([^,]*\),.*/\1/p' "$1/summary.json"; }
 broken() { summary "$1" broken_bonds; }
 width() { printf "%.4f" "$(first "$1/mouth.csv" 3 2 "$2")"; }

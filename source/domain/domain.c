@@ -75,11 +75,10 @@ bool domain_can_leave_tensors(const Domain *d)
 {
   const Region *region = &d->regions[0];
   double *strain[6], *stress[6];
-  bool hookean = true;
-  for (int k = 0; k < d->material_count; ++k) hookean &= material_is_hookean(&d->materials[k]);
-  return hookean && d->region_count == 1 && points_on_particles(&region->points) && !region->points.plane_stress &&
-         region->type->scratch && region->type->scratch(region->formulation, strain, stress) && !d->failure.criterion &&
-         !d->gave_up && !d->is_strained && !d->begins_under_stress && !d->forces.count;
+  return domain_is_hookean(d, NULL) && d->region_count == 1 && points_on_particles(&region->points) &&
+         !region->points.plane_stress && region->type->scratch &&
+         region->type->scratch(region->formulation, strain, stress) && !d->failure.criterion && !d->gave_up &&
+         !d->is_strained && !d->begins_under_stress && !d->forces.count;
 }
 
 void domain_leave_tensors(Domain *d, bool leave)
@@ -103,10 +102,10 @@ void domain_leave_tensors(Domain *d, bool leave)
 void domain_give_way(Domain *d, bool give)
 {
   if (!d->may_leave_tensors) return;
-  domain_leave_tensors(d, !give);
-  if (give)
+  if (give) {
+    domain_leave_tensors(d, false);
     d->regions[0].type->give_way(d->regions[0].formulation);
-  else
+  } else
     domain_show_states(d);
 }
 

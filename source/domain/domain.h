@@ -167,6 +167,8 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
 
 /** Whether a block of a region is made of a material. */
 bool region_is_made_of(const Domain *domain, const Region *region, const char *material);
+/** Whether all laws of a region, NULL: of all materials of the deck, are Hooke's. */
+bool domain_is_hookean(const Domain *domain, const Region *region);
 /** The same; a body of one region also has materials that no block is made of, so that mistakes in them are told. */
 bool region_has_material(const Domain *domain, const Region *region, const char *material);
 
@@ -322,11 +324,11 @@ int domain_observe(Domain *domain, Error *error);
  *  `may_leave_tensors` is set; else nothing happens. */
 void domain_leave_tensors(Domain *domain, bool leave);
 /** Gives memory back that the next evaluation writes before it reads it, for those who need room after the last one; then takes it again, with force states of
- *  the state held. Only where `may_leave_tensors` is set. */
+ *  the state held. Evaluations leave nothing out from then on. Only where `may_leave_tensors` is set. */
 void domain_give_way(Domain *domain, bool give);
 /** Makes force states again, in whose place domain_observe has put what is left out. */
 void domain_stop_observing(Domain *domain);
-/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, of which no bond breaks, that nothing
+/** Whether points are such that evaluations may leave their strains and stresses out: one region of Hooke's laws, not in plane stress, of which no bond breaks, that nothing
  *  strains beforehand, and on which nothing acts that may fail by itself, as bars and contact. */
 bool domain_can_leave_tensors(const Domain *domain);
 /** Finds what is left out, at the displacements held; forces stay as they are. */

@@ -195,9 +195,7 @@ static int count_volumes(Domain *d, Error *error)
 /** Whether bonds may break: where a deck tells a criterion, and those of laws that soften. */
 static bool may_break(const Domain *d, const DomainSpec *spec)
 {
-  bool hookean = true;
-  for (int k = 0; k < d->material_count; ++k) hookean &= material_is_hookean(&d->materials[k]);
-  return spec->failure || !hookean;
+  return spec->failure || !domain_is_hookean(d, NULL);
 }
 
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)

@@ -52,12 +52,11 @@ static bool is_linear(const Domain *d, const Region *region)
   return linear;
 }
 
-/** Whether all laws of a region are Hooke's. */
-static bool is_hookean(const Domain *d, const Region *region)
+bool domain_is_hookean(const Domain *d, const Region *region)
 {
   bool hookean = true;
   for (int k = 0; k < d->material_count; ++k)
-    if (region_is_made_of(d, region, d->materials[k].name)) hookean &= material_is_hookean(&d->materials[k]);
+    if (!region || region_is_made_of(d, region, d->materials[k].name)) hookean &= material_is_hookean(&d->materials[k]);
   return hookean;
 }
 
@@ -86,8 +85,8 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear && !d->is_strained))
     spec.components = 0;
   if (!spec.components) spec.on_bonds = false;
-  spec.no_tensors =
-      region->type->knows_hooke && spec.on_bonds && is_hookean(d, region) && !d->is_strained && !d->begins_under_stress;
+  spec.no_tensors = region->type->knows_hooke && spec.on_bonds && domain_is_hookean(d, region) && !d->is_strained &&
+                    !d->begins_under_stress;
   const bool on_particles = spec.components == 6 && !spec.on_bonds;
   if (spec.on_bonds && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
     return BRECCIA_FAILURE;

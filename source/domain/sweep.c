@@ -247,7 +247,6 @@ static bool closes_later(const Domain *d, Later *later, int64_t n)
 static void settle(Domain *d, Region *region, Group *group)
 {
   domain_settle(d, region);
-  group->filled = 0;
   TEAM_FOR (n, region->last_batch - region->first_batch) {
     const int64_t b = region->first_batch + n, first = d->batches[b].first * SLICE,
                   places = d->batches[b].last * SLICE - first;

@@ -41,7 +41,10 @@ int window_create(Domain *d, Region *region, Error *error)
   for (int64_t n = 0; n < batches; ++n)
     while (w->slices <= w->high[n] - w->low[n]) w->slices *= 2;
   w->threads = (int)(d->particles->slices / 2 / w->slices);
-  if (!w->threads) return BRECCIA_OK;
+  if (!w->threads) {
+    window_destroy(w);
+    return BRECCIA_OK;
+  }
   w->memory = places_reserved(w->threads * w->slices * w->numbers, "windows", error);
   return w->memory ? BRECCIA_OK : BRECCIA_FAILURE;
 }

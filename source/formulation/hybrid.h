@@ -74,8 +74,8 @@ typedef struct HybridHooke {
   double across; /* strain across the plane over the trace of that in it; 0 but in plane stress */
 } HybridHooke;
 
-/* Kinds of bonds that planes know, at most: nine of a horizon of 1.5 spacings, all of one of 2.015. */
-/* Kinds of bonds in cubic lattices, in the order of `ways` (hybrid_planes_setup.c): along the axes, then these. */
+/* Kinds of bonds in cubic lattices, in the order of `ways` (hybrid_planes_setup.c): along the axes, then these. Planes know nine of a horizon of 1.5 spacings and
+ * all of one of 2.015. */
 enum {
   ACROSS = 3,         /* the first of those across a square */
   NEAR_KINDS = 9,     /* of the shorter horizon */

@@ -389,10 +389,9 @@ static void put_aside(const SliceOf *s, const HookeWork *w)
 }
 
 /** Brings what stands around a slice into whole cache lines, those of a bundle, which is not at work meanwhile. */
-LANES_INLINE void line_up(const SliceOf *s, HookeWork *w, HookeBonds *bonds, int kind)
+LANES_INLINE void line_up(const SliceOf *s, int vectors, HookeWork *w, HookeBonds *bonds, int kind)
 {
   HookeAside *aside = w->aside;
-  const int vectors = s->h->lattice[aside->block].count;
   for (int k = 0; k < 3; ++k) {
     for (int n = 0; n < vectors; ++n)
       for (int lane = 0; lane < SLICE; lane += LANES) {
@@ -413,8 +412,9 @@ LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *given, int kin
   const Hybrid *h = s->h;
   HookeBonds bonds = {.base = s->base};
   const int block = h->particles->block[s->slice];
-  if (h->lattice[block].count >= MANY) line_up(s, &work, &bonds, kind);
-  const bool bundles = h->lattice[block].count > FEW || (w->planar && h->lattice[block].kind);
+  const HybridLattice *lattice = &h->lattice[block];
+  if (lattice->count >= MANY) line_up(s, lattice->count, &work, &bonds, kind);
+  const bool bundles = lattice->count > FEW || (w->planar && lattice->kind);
   bool some = false;
   for (int n = 0; n < s->groups; ++n) {
     const int64_t group = s->first + n;

@@ -152,12 +152,17 @@ static bool tied(const Loading *loading)
   return loading->ties[0].count || loading->ties[1].count || loading->ties[2].count;
 }
 
+/** Pages of external forces that nothing is written to take no memory. */
+static void make_zero(double *value)
+{
+  if (*value != 0) *value = 0;
+}
+
 /** External forces as they stand when a stage begins: of loads that act already. Others come suddenly, or grow over the first increment. */
 static void take_up_forces(const Loading *loading, Particles *p, double time)
 {
   for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      if (p->external[k][i] != 0) p->external[k][i] = 0; /* what is not written to takes no memory */
+    for (int64_t i = 0; i < p->places; ++i) make_zero(&p->external[k][i]);
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     const bool stays = load->first < loading->stage || load->type->goes_on;
@@ -237,8 +242,7 @@ void loading_state(Loading *loading, StateList *list)
 static void clear(const Selection *selection, Particles *p)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < p->motions; ++k)
-      if (p->external[k][selection->places[n]] != 0) p->external[k][selection->places[n]] = 0;
+    for (int k = 0; k < p->motions; ++k) make_zero(&p->external[k][selection->places[n]]);
 }
 
 /** Loads may overlap: they are cleared first, then added. */

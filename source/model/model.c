@@ -372,12 +372,11 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   Entry entry;
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   int status = model_begin(model, error);
-  for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k) {
-    domain_leave_tensors(&model->domain, k + 1 < steps);
+  domain_leave_tensors(&model->domain, steps > 1);
+  for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
     status = model_advance(model, error);
-  }
   domain_leave_tensors(&model->domain, false);
-  if (domain_observe(&model->domain, error) && !status) status = BRECCIA_FAILURE;
+  if (model->domain.tensors_are_old && domain_observe(&model->domain, error) && !status) status = BRECCIA_FAILURE;
   solver_put_arrays_back(&model->solver);
   return model_leave(&entry, status, error);
 }

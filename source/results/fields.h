@@ -4,8 +4,6 @@
 
 #include "domain/domain.h"
 
-enum { MOST_COMPONENTS = 9 };
-
 typedef struct OutputField {
   const char *name, *dimension, *about;
   int components;

@@ -46,25 +46,33 @@ struct ResultFile {
 
 static const char *const cell_kinds[] = {"Vertices", "Lines", "Polygons", "Strips"};
 
+/** A dataset of one number, or of the numbers from 0 on. */
+static int write_numbers(hid_t group, const char *name, int64_t rows, const int64_t *one)
+{
+  enum { AT_ONCE = 4096 };
+  int64_t numbers[AT_ONCE];
+  int bad = dataset_create(group, name, H5T_STD_I64LE, 1, rows > AT_ONCE ? AT_ONCE : (hsize_t)rows);
+  int64_t first = 0;
+  do {
+    const int64_t count = rows - first < AT_ONCE ? rows - first : AT_ONCE;
+    for (int64_t i = 0; i < count; ++i) numbers[i] = one ? *one : first + i;
+    bad |= dataset_write(group, name, H5T_NATIVE_INT64, 1, (hsize_t)first, (hsize_t)count, numbers);
+    first += count;
+  } while (first < rows);
+  return bad;
+}
+
 static int write_cells(hid_t root, int64_t particles)
 {
   int bad = 0;
   for (int k = 0; k < 4; ++k) {
-    int64_t cells = k ? 0 : particles, *numbers = memory_plain((size_t)cells + 2, sizeof(int64_t));
+    const int64_t cells = k ? 0 : particles;
     hid_t group = H5Gcreate2(root, cell_kinds[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const char *const names[] = {"NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity"};
-    const hsize_t rows[] = {1, 1, (hsize_t)cells + 1, (hsize_t)cells};
-    if (!numbers || group < 0) {
-      free(numbers);
-      if (group >= 0) H5Gclose(group);
-      return 1;
-    }
-    for (int n = 0; n < 4; ++n) {
-      for (int64_t i = 0; i <= cells; ++i) numbers[i] = n < 2 ? cells : i;
-      bad |= dataset_create(group, names[n], H5T_STD_I64LE, 1, rows[n] > 4096 ? 4096 : rows[n]);
-      bad |= dataset_write(group, names[n], H5T_NATIVE_INT64, 1, 0, rows[n], numbers);
-    }
-    free(numbers);
+    if (group < 0) return 1;
+    bad |= write_numbers(group, "NumberOfCells", 1, &cells);
+    bad |= write_numbers(group, "NumberOfConnectivityIds", 1, &cells);
+    bad |= write_numbers(group, "Offsets", cells + 1, NULL);
+    bad |= write_numbers(group, "Connectivity", cells, NULL);
     bad |= H5Gclose(group) < 0;
   }
   return bad;

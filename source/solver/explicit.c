@@ -156,6 +156,11 @@ static size_t bytes(Solver *run)
          face_work_bytes(&s->face_work) + solver_kept_bytes(run, KEPT_BUT_MOTION);
 }
 
+bool explicit_is_in_place(const Explicit *s)
+{
+  return !s->begun.displacement[s->rows[0]];
+}
+
 static void give_up_begun(Explicit *s)
 {
   explicit_put_arrays_back(s);
@@ -176,11 +181,9 @@ static int make_room(Explicit *s, Solver *run, Error *error)
 {
   static const char label[] = "motion before a step";
   int failed = solver_keep(run, KEPT_BUT_MOTION, &s->before, error);
-  s->in_place = false;
   if (s->domain->leaves_tensors) give_up_begun(s);
-  s->in_place = s->domain->leaves_tensors;
-  if (s->in_place) return failed ? BRECCIA_FAILURE : BRECCIA_OK;
-  for (int r = 0; r < s->row_count && !failed && !s->begun.displacement[s->rows[r]]; ++r) {
+  for (int r = 0; r < s->row_count && !failed && !s->domain->leaves_tensors && !s->begun.displacement[s->rows[r]];
+       ++r) {
     const int64_t places = s->domain->particles->places;
     failed = !(s->begun.velocity[s->rows[r]] = places_array(places, label, error)) ||
              !(s->begun.displacement[s->rows[r]] = places_array(places, label, error));
@@ -318,6 +321,17 @@ static void add_sums(Explicit *s)
   for (int64_t b = 0; b < s->domain->batch_count; ++b) explicit_add_to_ledger(s, s->sums[b]);
 }
 
+/** Each thread writes to the part that it will work on (places_array says why). */
+static void find_accelerations(void *context, int64_t b)
+{
+  Explicit *s = context;
+  const Particles *p = s->domain->particles;
+  const Batch *batch = &s->domain->batches[b];
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
+      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->inertia[k][i];
+}
+
 static int begin(Solver *run, Error *error)
 {
   (void)error;
@@ -331,9 +345,9 @@ static int begin(Solver *run, Error *error)
   loading_settle(s->loading, d->particles, d->particles->velocity, 0);
   const Particles *p = d->particles;
   s->ledger->kinetic = 0;
+  team_each(d->batch_count, find_accelerations, s);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->inertia[k][i];
       s->ledger->kinetic += 0.5 * p->inertia[k][i] * d->counted[i] * p->velocity[k][i] * p->velocity[k][i];
       if (k < ROTATION) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
     }

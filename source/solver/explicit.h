@@ -32,14 +32,12 @@ typedef struct Explicit {
   double *acceleration[MOTIONS];
   int rows[MOTIONS], row_count; /* of motion, that something can move */
   /* What a step begins with stays here: it writes displacements and velocities into other arrays, which change places with these. So nothing need be copied
-   * for a step that fails, and each row is read once. NULL in rows that nothing moves, and while no steps are taken. */
+   * for a step that fails, and each row is read once. NULL in rows that nothing moves, while no steps are taken, and where steps are taken in place: those of
+   * elastic bodies that leave strains out, which fail only where they grow beyond all bounds. */
   struct {
     double *displacement[MOTIONS], *velocity[MOTIONS];
   } begun;
-  bool exchanged; /* the particles have arrays of `begun` */
-  /* Steps of large elastic bodies write over the motion that they begin with: all that can go wrong with them is that they grow beyond all bounds, and what is
-   * given back then is that motion but for roundings. */
-  bool in_place;
+  bool exchanged;           /* the particles have arrays of `begun` */
   StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
@@ -76,7 +74,11 @@ double explicit_time_after_step(const Explicit *solver);
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
 
-/** Motion before a step that has come to its forces, from that in its middle, where steps are taken in place. By one thread. */
+/** Whether steps write over the motion that they begin with. */
+bool explicit_is_in_place(const Explicit *s);
+
+/** Motion before a step that has come to its forces, from that in its middle, where steps are taken in place: but for roundings, and for velocities of what is
+ *  moved, which are the mean of the step. By one thread. */
 void explicit_step_back(Explicit *s);
 
 /** The arrays of the particles' motion change places with those of `begun`. By one thread. */

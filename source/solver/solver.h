@@ -148,7 +148,7 @@ double solver_time_in_motion(const Solver *solver);
 /** SolverType.damping of a stage, or 0. @param[out] node  of the deck, where it is said */
 double solver_stage_damping(const Solver *solver, int64_t stage, const Node **node);
 
-/** Whether some of the stages asks for linearised steps. @param[in] stages  of SolveSpec */
+/** Whether some of the stages asks for linearised steps, or there are no stages yet of which it is known. @param[in] stages  of SolveSpec */
 bool solver_linearises(const SectionList *stages);
 
 /** SolverType.steady of a stage. */

@@ -15,7 +15,7 @@ static void exchange(double **a, double **b)
 void explicit_exchange_motion(Explicit *s)
 {
   Particles *p = s->domain->particles;
-  if (s->in_place) return;
+  if (explicit_is_in_place(s)) return;
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
     exchange(&p->displacement[k], &s->begun.displacement[k]);
@@ -58,10 +58,11 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   const double *counted = s->domain->counted;
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
+  const bool in_place = explicit_is_in_place(s);
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
-    const double *displacement = s->in_place ? p->displacement[k] : s->begun.displacement[k],
-                 *velocity = s->in_place ? p->velocity[k] : s->begun.velocity[k];
+    const double *displacement = in_place ? p->displacement[k] : s->begun.displacement[k],
+                 *velocity = in_place ? p->velocity[k] : s->begun.velocity[k];
     for (int64_t i = first; i < last; i += LANES) {
       Lanes v = lanes_load(velocity + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i);

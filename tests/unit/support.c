@@ -5,6 +5,12 @@ bool under_sanitizers(void)
   return getenv("BRECCIA_SANITIZED") != NULL;
 }
 
+void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name)
+{
+  for (int k = 0; k < rows; ++k)
+    if (memcmp(a[k], b[k], sizeof(double) * (size_t)places)) fail_msg("%s, row %d: not the same bits", name, k);
+}
+
 static breccia_model *model_from(const breccia_options *options, const char *format, va_list arguments)
 {
   Text deck = {0};

@@ -28,6 +28,8 @@ char *refusal_of(const char *deck);
 /** Of a deck: a soft elastic material m in m, kN, s, whose waves run at 77 m/s. */
 #define SOFT_SOLID "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
 
+/** Fails unless rows of numbers are the same to the bit. */
+void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name);
 /** Fails unless |a - b| <= tolerance. */
 #define assert_near(a, b, tolerance) assert_near_at((a), (b), (tolerance), #a, __FILE__, __LINE__)
 void assert_near_at(double a, double b, double tolerance, const char *what, const char *file, int line);

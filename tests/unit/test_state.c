@@ -299,12 +299,6 @@ static void a_step_that_fails_gives_back_every_bit(void **state)
   }
 }
 
-static void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name)
-{
-  for (int k = 0; k < rows; ++k)
-    if (memcmp(a[k], b[k], sizeof(double) * (size_t)places)) fail_msg("%s %d is not the same", name, k);
-}
-
 /** A bar that is pulled. */
 static breccia_model *pulled_bar(const char *strain, const char *more)
 {
