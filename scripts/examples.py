@@ -5,7 +5,7 @@
 SOURCE: the project; PROGRAMS: the folder with the command breccia; WORK: a folder of its own, which is emptied first; PAGE: SOURCE/examples/report.html when absent.
 Tables are those between marks in the pages of the examples, which report.sh has written there. A row with columns 'computed' and 'accepted' must keep to what is accepted,
 '2.2 to 3.0' or words; a column whose head says '(accepted -5 to 5)' to these; a column 'difference' to the size in the 'band' beside it. --strict: numbers that differ from those of the
-project's own pages by more than a hundredth count, too, and so does a time of all examples beyond M minutes (45).
+project's own pages by more than a hundredth, or by more than the 5 of '(± 5 m)' in the head of their column, count, too, and so does a time of all examples beyond M minutes (45).
 N examples run at once, each on its share of the cores; as many as there are cores when absent, as small bodies gain little from a second one.
 Ends with 1 if anything is red."""
 import base64
@@ -22,6 +22,7 @@ import time
 
 NUMBER = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 RANGE = re.compile(r"(?:^|accepted )([-−]?[\d.e+-]+) to ([-−]?[\d.e+-]+)")
+ALLOWED = re.compile(r"\(± (\d+(?:\.\d+)?)[^)]*\)")  # how far last digits may carry a column
 TIMES = re.compile(r"^(time|seconds|run time)\b|\btakes\b", re.I)  # rows and columns of times, which differ from run to run
 
 
@@ -66,13 +67,15 @@ def outside(head, row):
     return bad
 
 
-def differs(new, old):
-    """Whether the words of two cells differ, or a number by more than a hundredth. What reports run on request only may be left out."""
+def differs(new, old, head):
+    """Whether the words of two cells differ, or a number by more than a hundredth and than the head allows. What reports run on request only may be left out."""
+    allowed = ALLOWED.search(head)
+    allowed = float(allowed[1]) if allowed else 0
     if new == "not run":
         return False
     if NUMBER.sub("#", new) != NUMBER.sub("#", old):
         return True
-    return any(abs(a - b) > 0.01 * max(abs(a), abs(b)) for a, b in zip(numbers(new), numbers(old)))
+    return any(abs(a - b) > max(0.01 * max(abs(a), abs(b)), allowed) for a, b in zip(numbers(new), numbers(old)))
 
 
 def changed(rows, old):
@@ -80,7 +83,7 @@ def changed(rows, old):
     if old is None or [len(row) for row in rows] != [len(row) for row in old]:
         return None
     return {(r, c) for r, row in enumerate(rows) for c, cell in enumerate(row)
-            if not TIMES.search(row[0]) and not TIMES.search(rows[0][c]) and differs(cell, old[r][c])}
+            if not TIMES.search(row[0]) and not TIMES.search(rows[0][c]) and differs(cell, old[r][c], rows[0][c])}
 
 
 class Example:

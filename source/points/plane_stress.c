@@ -3,6 +3,7 @@
 #include "points/points_parts.h"
 
 #include <math.h>
+#include <string.h>
 
 breccia_batch batch_part(const breccia_batch *whole, const Material *m, int components, int first, int count)
 {
@@ -19,34 +20,51 @@ breccia_batch batch_part(const breccia_batch *whole, const Material *m, int comp
   return part;
 }
 
-/** True if the stress zz of point i of a batch is nothing beside its other stresses and what its strain zz would make
- *  elastically. */
-static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i)
+/** What a strain of 1 across the plane makes of stress, elastically. */
+static double elastic_zz(const Material *m)
 {
-  double scale = (m->bulk + 4 * m->shear / 3) * fabs(batch->strain[ZZ][i]);
+  return m->bulk + 4 * m->shear / 3;
+}
+
+/* Open cracks that dilate have a last bit of stress left that never goes: that is nothing by the second one only. */
+static const double SHARP = 1e-12, CLOSE = 1e-9;
+
+/** True if the stress zz of point i of a batch is nothing, by this part of its other stresses and of what its strain zz would make
+ *  elastically. */
+static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i, double part)
+{
+  double scale = elastic_zz(m) * fabs(batch->strain[ZZ][i]);
   for (int k = 0; k < 6; ++k) scale += fabs(batch->stress[k][i]);
-  return fabs(batch->stress[ZZ][i]) <= 1e-12 * scale;
+  return fabs(batch->stress[ZZ][i]) <= part * scale;
 }
 
 /** Strain zz of one point where Newton's method does not end: between two strains whose stresses zz differ in sign. The stress of some
- *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken.
+ *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken. Others have next to none left and come
+ *  no nearer to none (open cracks that dilate): then the first strain where it is so.
+ *  @param[in] from  where to begin
  *  @return true if it was found */
-static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double *strain_zz)
+static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double from, double *strain_zz)
 {
   enum { MOST_DOUBLINGS = 60, MOST_HALVINGS = 200 };
   breccia_batch one = batch_part(batch, m, 6, at, 1);
-  double *const x = strain_zz + at, ends[2] = {*x, *x}, values[2];
+  double *const x = strain_zz + at, ends[2] = {from, from}, values[2], close = NAN;
+  *x = from;
   if (m->law->update(m->constants, &one) >= 0) return false;
   values[0] = values[1] = one.stress[ZZ][0];
-  double step = -values[0] / (m->bulk + 4 * m->shear / 3);
+  double step = -values[0] / elastic_zz(m);
   for (int n = 0; n < MOST_DOUBLINGS && values[0] * values[1] > 0; ++n, step *= 2) {
+    if (isnan(close) && is_free_of_zz(m, &one, 0, CLOSE)) close = *x;
     ends[0] = ends[1];
     values[0] = values[1];
     *x = ends[1] += step;
-    if (m->law->update(m->constants, &one) >= 0) return false;
+    if (m->law->update(m->constants, &one) >= 0) break;
     values[1] = one.stress[ZZ][0];
   }
-  for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0); ++n) {
+  if (!(values[0] * values[1] <= 0)) {
+    *x = close;
+    return !isnan(close) && m->law->update(m->constants, &one) < 0;
+  }
+  for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0, SHARP); ++n) {
     /* The secant where it lies well inside, otherwise the middle. */
     const double share = values[0] / (values[0] - values[1]);
     *x = ends[0] + (n % 3 != 2 && share > 0.01 && share < 0.99 ? share : 0.5) * (ends[1] - ends[0]);
@@ -55,36 +73,41 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
     ends[side] = *x;
     values[side] = one.stress[ZZ][0];
   }
-  if (is_free_of_zz(m, &one, 0)) return true;
+  if (is_free_of_zz(m, &one, 0, SHARP)) return true;
   *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
-  return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
+  return m->law->update(m->constants, &one) < 0;
 }
 
 /** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
  *  not end: at corners, in softening, and with tangents that are not those of whole steps. */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
-  enum { MOST_ITERATIONS = 20 };
-  double local[BATCH * 36], *const tangent = batch->tangent;
+  enum { QUICK_ITERATIONS = 6, MOST_ITERATIONS = 20 };
+  double local[BATCH * 36], begin[BATCH], *const tangent = batch->tangent;
+  memcpy(begin, strain_zz, sizeof *begin * (size_t)batch->count);
   batch->tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
     int bad = m->law->update(m->constants, batch), worst = -1;
     if (bad >= 0) return bad;
     for (int i = 0; i < batch->count; ++i) {
-      if (is_free_of_zz(m, batch, i)) continue;
+      if (is_free_of_zz(m, batch, i, iteration > QUICK_ITERATIONS ? CLOSE : SHARP)) continue;
       worst = i;
       if (iteration == MOST_ITERATIONS) {
-        if (!bisect_zz(m, batch, i, strain_zz)) return i;
+        if (!bisect_zz(m, batch, i, begin[i], strain_zz)) return i;
         continue;
       }
-      const double stiffness = batch->tangent[36 * i + 7 * ZZ];
-      strain_zz[i] -= batch->stress[ZZ][i] / (stiffness > 0 ? stiffness : m->bulk + 4 * m->shear / 3);
+      /* No further than the point is strained by now, or elastic stiffness would have it: next to nothing divided by no stiffness leads out of numbers. */
+      const double stiffness = batch->tangent[36 * i + 7 * ZZ], elastic = batch->stress[ZZ][i] / elastic_zz(m),
+                   step = stiffness > 0 ? batch->stress[ZZ][i] / stiffness : elastic;
+      double most = fabs(elastic);
+      for (int k = 0; k < 6; ++k) most = fmax(most, fabs(batch->strain[k][i]));
+      strain_zz[i] -= copysign(fmin(fabs(step), most), step);
     }
     if (worst < 0 || iteration == MOST_ITERATIONS) break;
   }
   for (int i = 0; tangent && i < batch->count; ++i) {
     double *d = tangent + 36 * i;
-    double column[6], row[6], pivot = d[7 * ZZ] > 0 ? d[7 * ZZ] : m->bulk + 4 * m->shear / 3;
+    double column[6], row[6], pivot = d[7 * ZZ] > 0 ? d[7 * ZZ] : elastic_zz(m);
     for (int k = 0; k < 6; ++k) {
       column[k] = d[6 * k + ZZ];
       row[k] = d[6 * ZZ + k];
