@@ -33,7 +33,7 @@ typedef struct HybridGeometry {
   int16_t count;  /* members; 0: it carries nothing */
   int16_t other;  /* lattice vector of the other end */
   int32_t block;  /* which numbers lattice vectors in its own way */
-  bool planar;    /* its members are all that it has inside an endless lattice, and planes go through it */
+  bool planar; /* its strain is made of the members that it has inside an endless lattice, and planes go through it */
   bool
       mirrored; /* members 2 n and 2 n + 1 stand opposite each other about the middle, so that their g are too; a last one stands there */
 } HybridGeometry;

@@ -231,7 +231,8 @@ typedef struct HookeBundle {
   int slices;
   unsigned lanes;                    /* bits */
   uint8_t aside[HYBRID_NEAR][SLICE]; /* lanes by lattice vector and slice */
-  int32_t group[HYBRID_NEAR][SLICE], base[HYBRID_NEAR][SLICE];
+  int32_t group[HYBRID_NEAR][SLICE]; /* of their slots, as in Hybrid */
+  int32_t base[HYBRID_NEAR][SLICE];
 } HookeBundle;
 
 typedef struct HookeAside {
@@ -245,27 +246,42 @@ typedef struct HookeAside {
   _Alignas(64) double u[3][HYBRID_NEAR * SLICE], at[3][HYBRID_NEAR * SLICE], sums[3 * HYBRID_NEAR * SLICE];
 } HookeAside;
 
-LANES_INLINE const HybridGeometry *geometry_of(const Hybrid *h, int32_t group, int lane)
+/** Geometry of a lane of a slot. @param[in] group  as in Hybrid */
+LANES_INLINE int32_t geometry_of(const Hybrid *h, int32_t group, int lane)
 {
-  const int32_t whole = h->group[group];
-  return &h->table.geometry[whole >= 0 ? whole : h->mixed[-1 - whole][lane]];
+  return group >= 0 ? group : h->mixed[-1 - group][lane];
+}
+
+/** Bits of lane `lane` of eight bytes. */
+LANES_INLINE unsigned bits_of_lane(const uint8_t bytes[SLICE], int lane)
+{
+  uint64_t all;
+  memcpy(&all, bytes, sizeof all);
+  return (unsigned)((all >> lane & 0x0101010101010101u) * 0x0102040810204080u >> 56);
 }
 
 /** The next bonds of lane `lane` of a bundle's slices with the same members. */
 LANES_INLINE void next_aside(const Hybrid *h, const int32_t *group, int lane, unsigned *left, HookeBonds *bonds)
 {
-  bonds->lanes = *left;
+  const int32_t first = geometry_of(h, group[__builtin_ctz(*left)], lane);
+  unsigned others = 0;
+  take_geometry(h, bonds, &h->table.geometry[first]);
+  for (unsigned rest = *left; rest; rest &= rest - 1)
+    if (geometry_of(h, group[__builtin_ctz(rest)], lane) != first) others |= rest & -rest;
+  bonds->alike = true;
+  bonds->lanes = *left & ~others;
+  *left = others;
+  if (!others) return;
   bonds->alike = false;
-  *left = 0;
-  take_geometry(h, bonds, geometry_of(h, group[__builtin_ctz(bonds->lanes)], lane));
-  for (int n = 0; n < SLICE; ++n) {
-    if (!(bonds->lanes >> n & 1)) continue;
-    const HybridGeometry *geometry = geometry_of(h, group[n], lane);
-    if (geometry->first != bonds->first) *left |= 1u << n;
+  for (unsigned rest = bonds->lanes | others; rest; rest &= rest - 1) {
+    const int n = __builtin_ctz(rest);
+    const HybridGeometry *geometry = &h->table.geometry[geometry_of(h, group[n], lane)];
+    if (geometry->first != bonds->first) continue;
+    bonds->lanes |= 1u << n;
     for (int k = 0; k < 3 && h->pairwise; ++k) bonds->each[k][n] = geometry->area[k];
     if (!h->pairwise) bonds->each[0][n] = geometry->volume;
   }
-  bonds->lanes &= ~*left;
+  *left &= ~bonds->lanes;
 }
 
 /** Brings what the members of bonds are asked for, and forgets what they received. */
@@ -314,8 +330,7 @@ LANES_INLINE void exert_lane(const Hybrid *h, const HookeWork *w, const HookeBun
   work.sums = aside->sums;
   work.room = SLICE;
   for (int n = 0; n < vectors; ++n) {
-    unsigned left = 0;
-    for (int slice = 0; slice < bundle->slices; ++slice) left |= (bundle->aside[n][slice] >> lane & 1u) << slice;
+    unsigned left = bits_of_lane(bundle->aside[n], lane) & ((1u << bundle->slices) - 1);
     while (left) {
       next_aside(h, bundle->group[n], lane, &left, &bonds);
       bring(w, bundle, &bonds, lane, kind);
@@ -419,12 +434,18 @@ LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *given, int kin
   for (int n = 0; n < s->groups; ++n) {
     const int64_t group = s->first + n;
     for (unsigned left = left_by_planes(h, w, group); left;) {
-      next_bonds(h, group, &left, &bonds);
+      if (bundles && __builtin_popcount(left) <= ALONE) { /* those of them with the same members are no more */
+        bonds.lanes = left;
+        left = 0;
+      } else {
+        next_bonds(h, group, &left, &bonds);
+      }
       if (bundles && __builtin_popcount(bonds.lanes) <= ALONE) {
         const int64_t slot = h->family->first[s->slice] + h->bonds->owned[group];
         const int vector = hybrid_vector(h, block, s->slice, slot);
         w->aside->lanes[vector] |= (uint8_t)bonds.lanes;
-        w->aside->group[vector] = (int32_t)group;
+        w->aside->group[vector] = h->group[group];
+        if (h->group[group] < 0) __builtin_prefetch(h->mixed[-1 - h->group[group]]);
         *puts = true;
         continue;
       }
@@ -458,12 +479,12 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
     const int block = h->particles->block[slice];
     const HybridLattice *lattice = &h->lattice[block];
     const HybridHooke *hooke = &h->hooke[h->material[slice]];
-    unsigned left = 0;
     const int planes = w->planar ? h->planar_kind[slice] : HYBRID_ODD;
     if (planes != HYBRID_ODD && !h->planes[planes].leaves) continue;
-    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1]; ++group)
-      left |= left_by_planes(h, w, group);
-    if (!left || !lattice->count) continue;
+    bool some_left = planes != HYBRID_ODD;
+    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1] && !some_left; ++group)
+      some_left = left_by_planes(h, w, group);
+    if (!some_left || !lattice->count) continue;
     if (cleared < lattice->count) {
       memset(w->sums - sums_margin(h) + 3 * cleared * w->room, 0,
              sizeof *w->sums * (size_t)(3 * (lattice->count - cleared) * w->room));
@@ -499,7 +520,10 @@ void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
   aside.block = -1;
   memset(aside.lanes, 0, sizeof aside.lanes);
   memset(aside.here, 0, sizeof aside.here);
-  memset(aside.bundle, 0, sizeof aside.bundle); /* lanes without a slice read any place */
+  for (int n = 0; n < BUNDLES; ++n) {
+    aside.bundle[n].slices = 0;
+    memset(aside.bundle[n].base, 0, sizeof aside.bundle[n].base); /* lanes without a slice read any place */
+  }
   for (int n = 0; n < HYBRID_NEAR; ++n) aside.number[n] = SLICE * n;
   HookeWork w = {.stripe = stripe, .aside = &aside, .sums = sums + sums_margin(h), .room = 2 * sums_margin(h) + SLICE};
   w.kind = (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (sweep->at ? HOOKE_LINEAR : 0);

@@ -9,7 +9,7 @@
  * has number m of each of them: so neighbours along a row stand in whole vectors, too, and none is put together of two. Of each place there are
  * the displacement and the force, side by side, and nothing else, so that all that the bonds of a row need lies in the first-level cache: sums
  * that bonds could share would save few operations and take three times as long to fetch from the second.
- * Bonds that lack a member have a weight of 0 here and are walked (hybrid_hooke.c). */
+ * Bonds that lack a member of those have a weight of 0 here and are walked (hybrid_hooke.c). */
 #include "formulation/hybrid_slice.h"
 
 #include <string.h>

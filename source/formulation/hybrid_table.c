@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -286,12 +287,22 @@ static bool weigh(const Hybrid *h, Members *m)
   return true;
 }
 
-/** Members that a bond has inside an endless lattice. */
-static int most_members(const Hybrid *h, int block, int other)
+/** Whether the vectors g of members are those that they have inside an endless lattice, where those that are missing have none: what lies in line with a
+ *  bond of one spacing, beyond its ends, counts for nothing. */
+static bool is_planar(const Hybrid *h, const Members *m)
 {
-  int count = 0;
-  for (int n = 0; n < h->lattice[block].count; ++n) count += difference(&h->lattice[block], other, n) >= 0;
-  return count;
+  const HybridLattice *lattice = &h->lattice[m->block];
+  Members all = {.block = m->block, .other = m->other};
+  for (int n = 0; n < lattice->count; ++n)
+    if (difference(lattice, m->other, n) >= 0) all.key[all.count++] = (uint16_t)n;
+  if (all.count == m->count) return true;
+  if (!weigh(h, &all)) return false;
+  double g[HYBRID_NEAR][3] = {{0}};
+  for (int n = 0; n < m->count; ++n) memcpy(g[m->near[n]], m->g[n], sizeof *g);
+  for (int n = 0; n < all.count; ++n)
+    for (int k = 0; k < 3; ++k)
+      if (fabs(all.g[n][k] - g[all.near[n]][k]) > 1e-13 / h->family->lattices[m->block].spacing) return false;
+  return true;
 }
 
 /** The geometry with these members and this section. @return its number, or -1: there is no memory */
@@ -328,8 +339,7 @@ static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volum
                            .count = (int16_t)m->count,
                            .other = (int16_t)m->other,
                            .block = m->block,
-                           .planar =
-                               m->count && h->lattice[m->block].kind && m->count == most_members(h, m->block, m->other),
+                           .planar = m->count && h->lattice[m->block].kind && is_planar(h, m),
                            .mirrored = m->count && m->mirrored};
   if (m->count) {
     memcpy(t->near + t->members, m->near, sizeof *t->near * (size_t)m->count);

@@ -126,6 +126,27 @@ static void planes_exert_what_walked_bonds_do(void **state)
   }
 }
 
+/** A cube of n particles in each direction. With 1.5 spacings bonds along axes see particles beside them, those across squares before and behind them; with
+ *  2.015 spacings those across squares and through cubes also particles a spacing beyond their ends. What lies in line with a bond tells nothing of
+ *  its strain, so that bonds along axes need none there. */
+static void bonds_with_the_fit_of_an_endless_lattice_go_by_planes(void **state)
+{
+  (void)state;
+  const int64_t n = 16, a = n - 1, b = n - 2, c = n - 3; /* places of what is two, three and four particles long */
+  const int64_t asked[] = {3 * a * b * b + 6 * a * a * b,
+                           3 * a * b * b + 3 * b * b * b + 6 * c * c * b + 4 * c * c * c};
+  for (int of = 0; of < 2; ++of) {
+    breccia_model *m =
+        model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e5, Poisson ratio: 0.25}}\n"
+                 "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [16, 16, 16]}}}}\n"
+                 "peridynamics: {formulation: hybrid, horizon: %s spacings}\n"
+                 "solve: {explicit: {steps: 1}}\n",
+                 of ? "2.015" : "1.5");
+    assert_int_equal(planar(formulation_of(m)), asked[of]);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void eight_lanes_give_the_bits_of_four(void **state)
 {
   (void)state;
@@ -248,6 +269,7 @@ int main(void)
       cmocka_unit_test(planes_exert_what_walked_bonds_do),
       cmocka_unit_test(rows_of_any_length_exert_what_walked_bonds_do),
       cmocka_unit_test(blocks_that_do_not_touch_exert_nothing_on_each_other),
+      cmocka_unit_test(bonds_with_the_fit_of_an_endless_lattice_go_by_planes),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four),
       cmocka_unit_test(breaking_has_the_same_bits_by_threads_and_after_a_restart),
   };
