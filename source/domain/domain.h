@@ -214,6 +214,8 @@ void domain_state(Domain *domain, StateList *list);
 int domain_keep_stresses(Domain *domain, bool keep, Error *error);
 /** Puts stresses by, so that laws write those of a step into other arrays; and takes them back if it fails. By one thread. Only where there is room. */
 void domain_put_stresses_by(Domain *domain);
+/** After steps: stresses of points on particles stand in the arrays again in which they stood before these. */
+void domain_put_stresses_back(Domain *domain);
 /** Forces, strains and stresses of the state that a step began with, after all rows that it had tried have come back. */
 void domain_follow(Domain *domain);
 

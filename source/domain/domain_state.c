@@ -135,9 +135,16 @@ void domain_state(Domain *d, StateList *list)
 int domain_keep_stresses(Domain *d, bool keep, Error *error)
 {
   int status = BRECCIA_OK;
+  if (!keep && d->region_count) domain_put_stresses_back(d);
   for (int r = 0; r < d->region_count && !status; ++r)
     status = points_keep_stresses(&d->regions[r].points, keep, error);
   return status;
+}
+
+static void show_stresses(Domain *d)
+{
+  const Points *points = &d->regions[0].points;
+  for (int k = 0; k < 6 && points_on_particles(points); ++k) d->stress[k] = points->stress[k];
 }
 
 void domain_put_stresses_by(Domain *d)
@@ -145,5 +152,13 @@ void domain_put_stresses_by(Domain *d)
   Points *points = &d->regions[0].points; /* those of several regions are one set of arrays, and are noted */
   if (!points->stress_before[0]) return;
   points_put_by(points);
-  for (int k = 0; k < 6 && points_on_particles(points); ++k) d->stress[k] = points->stress[k];
+  show_stresses(d);
+}
+
+void domain_put_stresses_back(Domain *d)
+{
+  Points *points = &d->regions[0].points;
+  if (!points_on_particles(points)) return;
+  points_put_back(points);
+  show_stresses(d);
 }

@@ -303,6 +303,7 @@ size_t points_kept_bytes(const Points *points)
 int points_keep_stresses(Points *points, bool keep, Error *error)
 {
   const bool wanted = keep && has_stresses_to_keep(points);
+  if (!wanted) points->exchanged = false;
   for (int k = 0; k < 6; ++k) {
     if (!wanted)
       places_free(&points->stress_before[k]);
@@ -319,4 +320,13 @@ void points_put_by(Points *points)
     points->stress[k] = points->stress_before[k];
     points->stress_before[k] = stress;
   }
+  if (points->stress_before[5]) points->exchanged = !points->exchanged;
+}
+
+void points_put_back(Points *points)
+{
+  if (!points->exchanged) return;
+  for (int k = 0; k < 6; ++k)
+    memcpy(points->stress_before[k], points->stress[k], sizeof(double) * (size_t)points->count);
+  points_put_by(points);
 }

@@ -38,6 +38,7 @@ typedef struct Points {
   double *strain[6], *stress[6]; /* [count] of points of six components; NULL: points_keep_tensors */
   bool shares;                   /* these arrays, with other points */
   double *stress_before[6];      /* [count] while points_put_by has room */
+  bool exchanged;                /* these have changed places with `stress` */
   /** [count] what their law is given beside the strain of displacements: the strain at which it has the stress under which they begin, less their free
    *  strain. Of six components NULL where there is none; the first is always there if any is. Borrowed */
   double *initial[6];
@@ -137,6 +138,8 @@ int points_keep_stresses(Points *points, bool keep, Error *error);
 /** Puts stresses by before a step, whose updates then write into other arrays; and takes them back, with those of the step put by. Nothing happens
  *  where there is no room for them. */
 void points_put_by(Points *points);
+/** After steps: stresses stand in the arrays again in which they stood when room was made. */
+void points_put_back(Points *points);
 
 /** Makes points of six components keep the tangents of their next updates, or no longer. Of linear laws one is kept for all their points; points of one
  *  strain keep none (points_try). */

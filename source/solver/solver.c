@@ -418,6 +418,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
 void solver_put_arrays_back(Solver *s)
 {
   if (s->own && s->type->put_arrays_back) s->type->put_arrays_back(s);
+  domain_put_stresses_back(s->domain);
 }
 
 Energy solver_energy(const Solver *s)

@@ -180,8 +180,9 @@ int solver_begin(Solver *solver, Error *error);
 int solver_measure(Solver *solver, StepCost *cost, Error *error);
 
 /** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit, but for how its
- *  equations are best solved. Where energies or a trap give the reason the step has been taken, and counts; so too at rest, where bonds have broken in it
- *  and no equilibrium was found without them: the state is then one with these bonds broken that is not in equilibrium.
+ *  equations are best solved, and for roundings where explicit steps are taken in place. Where energies or a trap give the reason the step has been taken, and
+ *  counts; so too at rest, where bonds have broken in it and no equilibrium was found without them: the state is then one with these bonds broken that is not in
+ *  equilibrium.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
 /** After steps, whatever has become of them: arrays of the body are where they were before. */

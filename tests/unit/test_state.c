@@ -407,6 +407,33 @@ static void strains_are_kept_where_steps_need_them(void **state)
   }
 }
 
+/** Arrays that a program has asked for once stay where they are while a stage lasts, and hold what a step has found, of laws that remember, too. */
+static void arrays_stay_where_they_are(void **state)
+{
+  (void)state;
+  static const char *const solve[] = {"explicit: {steps: 20}", "implicit: {end time: 4, time step: 0.1}",
+                                      "static: {increments: 20}"};
+  static const char *const names[] = {"displacement x", "velocity x", "force x", "strain xx", "stress xx", "stress xy"};
+  enum { NAMES = sizeof names / sizeof *names };
+  for (size_t n = 0; n < sizeof solve / sizeof *solve; ++n) {
+    char deck[600];
+    snprintf(deck, sizeof deck,
+             "materials: {m: {model: j2, density: 1, Young modulus: 150, Poisson ratio: 0.25, yield stress: 0.5}}\n"
+             "body: {b: {material: m, spacing: 1, shape: {box: {particles: [9, 4, 5]}}}}\n"
+             "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.1, 0, 0]}]\n"
+             "solve: {%s}\n",
+             solve[n]);
+    breccia_model *m = model_of(deck);
+    double *held[NAMES];
+    for (int k = 0; k < NAMES; ++k) held[k] = breccia_model_array(m, names[k]);
+    for (int step = 1; step <= 4; ++step) {
+      advance(m, step);
+      for (int k = 0; k < NAMES; ++k) assert_ptr_equal(breccia_model_array(m, names[k]), held[k]);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
 static void rows_have_names_of_their_own_and_known_units(void **state)
 {
   (void)state;
@@ -437,6 +464,7 @@ int main(void)
       cmocka_unit_test(strains_that_are_left_out_are_found_to_the_same_bits),
       cmocka_unit_test(steps_in_place_lead_to_the_same_bits),
       cmocka_unit_test(strains_are_kept_where_steps_need_them),
+      cmocka_unit_test(arrays_stay_where_they_are),
       cmocka_unit_test(rows_have_names_of_their_own_and_known_units),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
