@@ -51,7 +51,7 @@ bench-servers: setup all
 recovery: all
 	@python3 bench/recovery.py build/release/breccia docs/laboratory.md
 
-# The same bodies by the program of another commit (COMMIT=..., the one before), in turn; tells what takes 5 % longer.
+# The same bodies and laws by the program of another commit (COMMIT=..., the one before), in turn; tells what takes 5 % longer.
 bench-beside: all
 	@python3 -B bench/beside.py build/release/breccia_bench $(COMMIT)
 

@@ -124,7 +124,7 @@ static double step(LawPoints *b, double yield, int number)
     for (int k = 0; k < b->components; ++k) b->strain[k][i] = size * b->direction[k][i];
   }
   const ptrdiff_t values = b->material.history_values;
-  const double start = clock_seconds();
+  const double start = busy_seconds();
   for (int first = 0; first < b->count; first += BATCH) {
     breccia_batch batch = {.size = sizeof(breccia_batch),
                            .count = BATCH,
@@ -136,7 +136,7 @@ static double step(LawPoints *b, double yield, int number)
     }
     b->material.law->update(b->material.constants, &batch);
   }
-  const double seconds = clock_seconds() - start;
+  const double seconds = busy_seconds() - start;
   double *other = b->committed;
   b->committed = b->trial;
   b->trial = other;
@@ -187,11 +187,12 @@ int main(void)
       nanoseconds[way] = 1e9 * median(seconds[way], REPEATS) / batch[way].count;
       release(&batch[way]);
     }
-    printf("| %s | %.1f | %.0f | %.0f | %.1f | %.0f | %.1f |\n", samples[s].law, nanoseconds[0], nanoseconds[1],
+    printf("| %s | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f |\n", samples[s].law, nanoseconds[0], nanoseconds[1],
            nanoseconds[2], nanoseconds[3], nanoseconds[4], 1e9 * memory);
     fflush(stdout);
   }
-  printf("\nns per point on one thread, medians of %d: points that stay elastic, half of them and all of them "
+  printf("\nns of processor time per point on one thread, medians of %d: points that stay elastic, half of them and "
+         "all of them "
          "straining on beyond "
          "yield, of %d points; the same of %d points, whose numbers stay in the caches; memory: what moving strain, "
          "stress and both "

@@ -119,8 +119,7 @@ LANES_INLINE Lanes lanes_cross(Lanes a, Lanes b, Lanes c, Lanes d)
 /** e^x = power (1 + part); x is limited to -708 to 709. */
 LANES_INLINE void lanes_split_exponential(Lanes x, Lanes *power, Lanes *part)
 {
-  x = lanes_choose(x < lanes_set(-708), lanes_set(-708), x);
-  x = lanes_choose(x > lanes_set(709), lanes_set(709), x);
+  x = lanes_least(lanes_greatest(x, lanes_set(-708)), lanes_set(709));
   /* x = n ln 2 + r: adding 3 * 2^51 leaves n in the low bits. */
   const Lanes round = lanes_set(6755399441055744.0), shifted = x * lanes_set(1.4426950408889634) + round,
               n = shifted - round;

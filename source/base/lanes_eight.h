@@ -96,6 +96,11 @@ LANES_INLINE void lanes_store_some(double *to, unsigned bits, int half, Lanes la
   lanes_store(to, (Lanes)_mm512_maskz_compress_pd((__mmask8)bits, (__m512d)lanes));
 }
 
+LANES_INLINE void lanes_spread_some(double *to, unsigned bits, const double *from)
+{
+  _mm512_mask_storeu_pd(to, (__mmask8)bits, _mm512_maskz_expand_pd((__mmask8)bits, (__m512d)lanes_load(from)));
+}
+
 LANES_INLINE Lanes lanes_root(Lanes x)
 {
   return (Lanes)_mm512_sqrt_pd((__m512d)x);
@@ -106,9 +111,14 @@ LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
   return (Lanes)_mm512_ternarylogic_epi64((__m512i)mask, (__m512i)a, (__m512i)b, 0xca);
 }
 
+LANES_INLINE unsigned lanes_bits(LaneMask mask)
+{
+  return _mm512_movepi64_mask((__m512i)mask);
+}
+
 LANES_INLINE int lanes_any(LaneMask mask)
 {
-  return _mm512_movepi64_mask((__m512i)mask) != 0;
+  return lanes_bits(mask) != 0;
 }
 
 LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)

@@ -109,6 +109,15 @@ LANES_INLINE void lanes_store_some(double *to, unsigned bits, int half, Lanes la
   }
 }
 
+/** The reverse: numbers that stand one after another to where the bit is set, and to no other place. */
+LANES_INLINE void lanes_spread_some(double *to, unsigned bits, const double *from)
+{
+  for (int k = 0; k < LANES; ++k) {
+    if (!(bits & 1u << k)) continue;
+    to[k] = *from++;
+  }
+}
+
 /** Square roots, rounded as the standard asks: the same bits on all processors. */
 LANES_INLINE Lanes lanes_root(Lanes x)
 {
@@ -126,6 +135,18 @@ LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
   return (Lanes)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)mask);
 #else
   return (Lanes)(((LaneMask)a & mask) | ((LaneMask)b & ~mask));
+#endif
+}
+
+/** One bit for each lane, the lowest for the first: whether the mask is set there. */
+LANES_INLINE unsigned lanes_bits(LaneMask mask)
+{
+#ifdef __AVX__
+  return (unsigned)_mm256_movemask_pd((__m256d)mask);
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < LANES; ++k) bits |= (unsigned)(mask[k] & 1 << k);
+  return bits;
 #endif
 }
 

@@ -219,10 +219,36 @@ static void eight_lanes_give_the_bits_of_four_between_materials(void **state)
         "file: lanes-left.csv}, c: {material: n, spacing: 1, file: lanes-right.csv");
 }
 
+/** Numbers of chosen lanes, stored one after another and spread again, are where they were; the other places keep what they had. */
+static void chosen_lanes_come_back_to_where_they_were(void **state)
+{
+  (void)state;
+  for (unsigned bits = 0; bits < 1u << LANES; ++bits) {
+    double packed[2 * LANES] = {0}, back[LANES];
+    Lanes lanes;
+    LaneMask mask;
+    for (int k = 0; k < LANES; ++k) {
+      lanes[k] = 1 + k;
+      mask[k] = bits & 1u << k ? -1 : 0;
+      back[k] = -1;
+    }
+    assert_int_equal(lanes_bits(mask), bits);
+    lanes_store_some(packed, bits, 0, lanes);
+    lanes_spread_some(back, bits, packed);
+    int next = 0;
+    for (int k = 0; k < LANES; ++k) {
+      const bool chosen = bits & 1u << k;
+      if (chosen) assert_true(packed[next++] == 1 + k);
+      assert_true(back[k] == (chosen ? 1 + k : -1));
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_variable_chooses_four_lanes),
+      cmocka_unit_test(chosen_lanes_come_back_to_where_they_were),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_in_laws),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_along_lattices),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_among_scattered_particles),

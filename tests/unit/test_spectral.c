@@ -58,8 +58,9 @@ static void eigenvalues_and_vectors_are_right_to_a_few_roundings(void **state)
     for (int l = 0; l < LANES; ++l) draw(&seed, (round + l) % KINDS, a[l]);
     for (int k = 0; k < 6; ++k)
       for (int l = 0; l < LANES; ++l) lanes[k][l] = a[l][k];
-    const Spectrum s = spectrum_of(lanes);
-    spectrum_values(lanes, plain);
+    const SpectrumApart apart = spectrum_apart(lanes);
+    const Spectrum s = spectrum_with_vectors(&apart);
+    spectrum_values(&apart, plain);
     for (int l = 0; l < LANES; ++l) {
       const double size = largest_of(a[l], 6) + 1e-300;
       double value[3], vector[9];
@@ -91,6 +92,16 @@ static void eigenvalues_and_vectors_are_right_to_a_few_roundings(void **state)
   for (int k = 0; k < 3; ++k) assert_true(worst[k] < 5e-15); /* false for what is no number */
 }
 
+/** The symmetric tensor with these eigenvalues and the spectrum's eigenvectors. */
+static void put_together(const Spectrum *s, const Lanes value[3], Lanes tensor[6])
+{
+  for (int k = 0; k < 6; ++k) {
+    tensor[k] = lanes_set(0);
+    for (int a = 0; a < 3; ++a)
+      tensor[k] += value[a] * lanes_product(s->vector[a][symmetric_row[k]], s->vector[a][symmetric_column[k]]);
+  }
+}
+
 /** Its own eigenvalues give the tensor back; those that are positive, and none of the others, leave as much on either side as the vectors do. */
 static void tensors_are_put_together_from_parts_as_from_vectors(void **state)
 {
@@ -105,12 +116,13 @@ static void tensors_are_put_together_from_parts_as_from_vectors(void **state)
       for (int k = 0; k < 6; ++k) a[k][l] = drawn[k];
     }
     for (int k = 0; k < 6; ++k) size = lanes_greatest(size, lanes_absolute(a[k]));
-    const SpectrumParts parts = spectrum_parts(a);
-    const Spectrum s = spectrum_of(a);
+    const SpectrumApart apart = spectrum_apart(a);
+    const SpectrumParts parts = spectrum_parts(&apart);
+    const Spectrum s = spectrum_with_vectors(&apart);
     spectral_tensor_of_parts(&parts, parts.value, again);
     for (int k = 0; k < 3; ++k) positive[k] = lanes_greatest(parts.value[k], lanes_set(0));
     spectral_tensor_of_parts(&parts, positive, parts_of);
-    spectral_tensor(&s, positive, whole);
+    put_together(&s, positive, whole);
     for (int l = 0; l < LANES; ++l)
       for (int k = 0; k < 6; ++k) {
         worst[0] = larger_of(worst[0], fabs(again[k][l] - a[k][l]) / size[l]);
@@ -129,8 +141,9 @@ static void tensors_that_are_nothing_or_round_have_some_basis(void **state)
     for (int shear = 0; shear < 2; ++shear) {
       Lanes a[6], plain[3];
       for (int k = 0; k < 6; ++k) a[k] = lanes_set(k < 3 ? sizes[n] : shear ? 1e-200 * sizes[n] : 0);
-      const Spectrum s = spectrum_of(a);
-      spectrum_values(a, plain);
+      const SpectrumApart apart = spectrum_apart(a);
+      const Spectrum s = spectrum_with_vectors(&apart);
+      spectrum_values(&apart, plain);
       for (int k = 0; k < 3; ++k) {
         assert_near(s.value[k][0], sizes[n], 1e-15 * fabs(sizes[n]));
         assert_near(plain[k][0], sizes[n], 1e-15 * fabs(sizes[n]));

@@ -59,14 +59,16 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   over.slope[LEFT] = -inverse * inverse * lanes_set(third);
   f.multiplier = dual_product(n, over, steep);
   f.sum = dual_sum(n, t->sum, -3 * c->elastic.bulk * c->dilation, f.multiplier);
-  Dual positive = dual_constant(zero), all = dual_constant(zero);
+  Dual pull[3];
   for (int k = 0; k < 3; ++k) {
     f.stress[k] = dual_sum(n, dual_times_variable(n, t->deviator[k], left, LEFT), 1.0 / 3, f.sum);
-    positive = dual_add(n, positive, dual_positive(n, f.stress[k]));
-    all = dual_add(n, all, dual_absolute(n, f.stress[k]));
+    pull[k] = dual_positive(n, f.stress[k]);
   }
+  const Dual positive = dual_add(n, dual_add(n, pull[0], pull[1]), pull[2]),
+             all = dual_sum(n, dual_scale(n, 2, positive), -1, f.sum); /* of all magnitudes */
   const LaneMask stressed = all.value > zero;
   f.share = dual_where(n, stressed, dual_quotient(n, positive, dual_choose(n, stressed, all, dual_constant(one))));
+  f.share.value = lanes_least(f.share.value, one);
   /* Plastic strain increments: (1 - r) s_trial / 2G + dl tan(psi) / 3. */
   Dual gone = dual_constant((one - left) * lanes_set(half));
   gone.slope[LEFT] = lanes_set(-half);
@@ -86,8 +88,8 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   Dual cohesion = dual_sum(n, dual_scale(n, c->compression * (1 + c->hump), rise), -c->compression * c->hump, fall);
   cohesion = dual_larger(n, cohesion, dual_constant(lanes_set(1e-9 * c->compression)));
   const Dual beta = dual_shift(dual_scale(n, 1 - c->alpha, dual_product(n, cohesion, weakness)), -(1 + c->alpha)),
-             pulled = dual_positive(n, f.stress[0]), pressed = dual_positive(n, dual_scale(n, -1, f.stress[0]));
-  Dual excess = dual_add(n, dual_sum(n, q, c->alpha, f.sum), dual_product(n, beta, pulled));
+             pressed = dual_sum(n, pull[0], -1, f.stress[0]);
+  Dual excess = dual_add(n, dual_sum(n, q, c->alpha, f.sum), dual_product(n, beta, pull[0]));
   excess = dual_scale(n, c->by_rest_of_alpha, dual_sum(n, excess, -c->gamma, pressed));
   f.excess = dual_sum(n, excess, -1, cohesion);
   return f;
@@ -113,6 +115,7 @@ typedef struct Search {
   Lanes left_before, gap_before, inverse_before; /* share, F and 1 / slope the time before */
   Lanes rest, found[FOUND];                      /* what the last step adds; what it leads to */
   LaneMask flows, ended, bracketed;
+  SpectrumApart apart; /* of the elastic trial strain, for tangents */
 } Search;
 
 LANES_INLINE Trial searched_trial(const Search *s)
@@ -123,7 +126,7 @@ LANES_INLINE Trial searched_trial(const Search *s)
   return t;
 }
 
-LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, Search *s)
+LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, Search *s, bool tangents)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const DualSlopes none = {0, 0};
@@ -131,7 +134,9 @@ LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, S
   Lanes elastic[6], value[3];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[k];
   const Lanes volume = lanes_product(lanes_set(lambda), lanes_trace(elastic));
-  spectrum_values(elastic, value);
+  const SpectrumApart apart = spectrum_apart(elastic);
+  spectrum_values(&apart, value);
+  if (tangents) s->apart = apart;
   for (int k = 0; k < 3; ++k) s->principal[k] = volume + lanes_set(twice) * value[k];
   const Trial t = trial_of(none, s->principal);
   s->sum = t.sum.value;
@@ -247,7 +252,7 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   const Trial varied = trial_of(every, s->principal);
   const Flow flow = flow_by(every, c, tail, &varied, left, p->committed);
   whole = wholeness(every, c, tail, flow.tension, flow.compression, flow.share);
-  const Spectrum strain = spectrum_of(elastic);
+  const Spectrum strain = spectrum_with_vectors(&s->apart);
   Lanes value[3], slopes[9], tangent[36];
   const Lanes by_flow =
       lanes_where(s->flows, lanes_set(1) / lanes_choose(s->flows, flow.excess.slope[LEFT], lanes_set(1)));
@@ -266,22 +271,22 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
 LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, int groups, bool tail, bool tangents)
 {
   Search searches[SOLID_GROUPS];
-  for (int g = 0; g < groups; ++g) begin_search(c, &p[g], &searches[g]);
+  for (int g = 0; g < groups; ++g) begin_search(c, &p[g], &searches[g], tangents);
   search_all(c, tail, p, groups, searches);
   for (int g = 0; g < groups; ++g) finish_step(c, &searches[g], &p[g], tail, tangents);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
+LANES_INLINE void steps(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
   step_along(constants, p, groups, false, tangents);
 }
 
-LANES_INLINE void step_with_tail(const void *constants, SolidLanes *p, int groups, bool tangents)
+LANES_INLINE void steps_with_tail(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
   step_along(constants, p, groups, true, tangents);
 }
 
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const DamagePlasticity *c = constants;
   const Lanes zero = lanes_set(0), radius = trial_radius(t),
@@ -289,7 +294,7 @@ LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *f
   const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
   const Lanes stress =
       lanes_dot(lanes_set(3), radius, lanes_set(c->alpha), t->invariant, lanes_set(fmax(0, beta)), most);
-  *found = (trial_history(t, PLASTIC_IN_TENSION) <= zero) & (trial_history(t, PLASTIC_IN_COMPRESSION) <= zero) &
+  *found = (history[PLASTIC_IN_TENSION] <= zero) & (history[PLASTIC_IN_COMPRESSION] <= zero) &
            (stress <= lanes_set((1 - c->alpha) * c->compression));
 }
 
@@ -297,6 +302,6 @@ int LANES_NAMED(damage_plasticity_update)(const void *constants, const breccia_b
 {
   const DamagePlasticity *c = constants;
   enum { VALUES = DAMAGE_PLASTICITY_HISTORY };
-  return c->tail == 1 ? solid_update_lanes(constants, batch, VALUES, &c->elastic, true, inside, step)
-                      : solid_update_lanes(constants, batch, VALUES, &c->elastic, true, inside, step_with_tail);
+  return c->tail == 1 ? solid_update_lanes(constants, batch, VALUES, &c->elastic, true, inside, NULL, steps)
+                      : solid_update_lanes(constants, batch, VALUES, &c->elastic, true, inside, NULL, steps_with_tail);
 }

@@ -11,8 +11,9 @@ LANES_INLINE ReturnSlopes slopes_of(const DruckerPrager *c, bool cone, double st
   return (ReturnSlopes){0, 0, 0, shears ? 1 - shear2 / (shear2 + 2 * hard / 3) : 1};
 }
 
-LANES_INLINE void step_group(const DruckerPrager *c, SolidLanes *p, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 {
+  const DruckerPrager *c = constants;
   const double shear2 = 2 * c->elastic.shear, bulk9 = 9 * c->elastic.bulk,
                stiffness = shear2 + bulk9 * c->slope * c->dilation;
   const Lanes zero = lanes_set(0), x = p->committed[CONE_EQUIVALENT], cut = lanes_set(c->cut);
@@ -58,20 +59,15 @@ LANES_INLINE void step_group(const DruckerPrager *c, SolidLanes *p, bool tangent
   }
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
-{
-  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
-}
-
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const DruckerPrager *c = constants;
-  const Lanes radius = hardening_least(&c->hardening, trial_history(t, CONE_EQUIVALENT));
+  const Lanes radius = hardening_least(&c->hardening, history[CONE_EQUIVALENT]);
   *found = (t->length + lanes_set(c->slope) * t->invariant <= radius) & (t->invariant <= lanes_set(c->cut));
 }
 
 int LANES_NAMED(drucker_prager_update)(const void *constants, const breccia_batch *batch)
 {
   const DruckerPrager *c = constants;
-  return solid_update_lanes(constants, batch, CONE_HISTORY, &c->elastic, true, inside, step);
+  return solid_update_lanes(constants, batch, CONE_HISTORY, &c->elastic, true, inside, step, NULL);
 }

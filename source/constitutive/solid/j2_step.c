@@ -39,34 +39,35 @@ LANES_INLINE void step_of(const J2 *c, SolidLanes *p, bool travels, bool tangent
   }
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 {
-  for (int g = 0; g < groups; ++g) step_of(constants, &p[g], false, tangents);
+  step_of(constants, p, false, tangents);
 }
 
-LANES_INLINE void step_that_travels(const void *constants, SolidLanes *p, int groups, bool tangents)
+LANES_INLINE void step_that_travels(const void *constants, SolidLanes *p, bool tangents)
 {
-  for (int g = 0; g < groups; ++g) step_of(constants, &p[g], true, tangents);
+  step_of(constants, p, true, tangents);
 }
 
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const J2 *c = constants;
-  *found = t->length <= hardening_least(&c->hardening, trial_history(t, J2_EQUIVALENT));
+  *found = t->length <= hardening_least(&c->hardening, history[J2_EQUIVALENT]);
 }
 
-LANES_INLINE void inside_that_travels(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside_that_travels(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const J2 *c = constants;
   Lanes distance[6];
-  for (int k = 0; k < 6; ++k) distance[k] = t->s[k] - trial_history(t, J2_BACK + k);
-  *found = lanes_norm(distance) <= hardening_least(&c->hardening, trial_history(t, J2_EQUIVALENT));
+  for (int k = 0; k < 6; ++k) distance[k] = t->s[k] - history[J2_BACK + k];
+  *found = lanes_norm(distance) <= hardening_least(&c->hardening, history[J2_EQUIVALENT]);
 }
 
 int LANES_NAMED(j2_update)(const void *constants, const breccia_batch *batch)
 {
   const J2 *c = constants;
   if (c->kinematic > 0)
-    return solid_update_lanes(constants, batch, J2_HISTORY, &c->elastic, true, inside_that_travels, step_that_travels);
-  return solid_update_lanes(constants, batch, J2_BACK, &c->elastic, true, inside, step);
+    return solid_update_lanes(constants, batch, J2_HISTORY, &c->elastic, true, inside_that_travels, step_that_travels,
+                              NULL);
+  return solid_update_lanes(constants, batch, J2_BACK, &c->elastic, true, inside, step, NULL);
 }

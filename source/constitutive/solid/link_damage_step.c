@@ -46,14 +46,16 @@ LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committ
   rest[1] = dual_product(n, dual_rest(n, dual_product(n, d[LINK_TENSILE], dual_rest(n, closed))), uncrushed);
 }
 
-LANES_INLINE void step_group(const LinkLaw *c, SolidLanes *p, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 {
+  const LinkLaw *c = constants;
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const DualSlopes n = {0, tangents ? 3 : 0};
-  const Spectrum spectrum = spectrum_of(p->strain);
+  const SpectrumApart apart = spectrum_apart(p->strain);
+  const SpectrumParts parts = spectrum_parts(&apart);
   Dual strain[3], effective[3], stress[3], rest[2];
   Lanes value[3], slopes[9], tangent[36], whole[6];
-  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
+  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(parts.value[k], k);
   const Dual volume = dual_add(n, dual_add(n, strain[0], strain[1]), strain[2]);
   for (int k = 0; k < 3; ++k) effective[k] = dual_sum(n, dual_scale(n, lambda, volume), twice, strain[k]);
   find_rest(n, c, p->committed, strain, effective, p->trial, rest);
@@ -64,31 +66,27 @@ LANES_INLINE void step_group(const LinkLaw *c, SolidLanes *p, bool tangents)
   /* Where both parts have as much left stress follows the strain itself: nothing is lost to the decomposition. */
   const LaneMask alike = rest[0].value == rest[1].value;
   elastic_stress_lanes(&c->elastic, p->strain, whole);
-  spectral_tensor(&spectrum, value, p->stress);
+  spectral_tensor_of_parts(&parts, value, p->stress);
   for (int k = 0; k < 6; ++k) p->stress[k] = lanes_choose(alike, lanes_product(whole[k], rest[0].value), p->stress[k]);
   if (!tangents) return;
+  const Spectrum spectrum = spectrum_with_vectors(&apart);
   for (int k = 0; k < 3; ++k)
     for (int m = 0; m < 3; ++m) slopes[3 * k + m] = stress[k].slope[m];
   spectral_tangent(&spectrum, value, slopes, tangent);
   store_tangents(tangent, p->tangent);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
-{
-  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
-}
-
 /** Points that were never damaged and whose strains, all together, are less than what damages. */
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const LinkLaw *c = constants;
   const Lanes square = trial_strain_square(&c->elastic, t);
-  *found = (trial_history(t, LINK_TENSILE) <= lanes_set(0)) & (trial_history(t, LINK_COMPRESSIVE) <= lanes_set(0)) &
+  *found = (history[LINK_TENSILE] <= lanes_set(0)) & (history[LINK_COMPRESSIVE] <= lanes_set(0)) &
            (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
 }
 
 int LANES_NAMED(link_damage_update)(const void *constants, const breccia_batch *batch)
 {
   const LinkLaw *c = constants;
-  return solid_update_lanes(constants, batch, LINK_HISTORY, &c->elastic, false, inside, step);
+  return solid_update_lanes(constants, batch, LINK_HISTORY, &c->elastic, false, inside, step, NULL);
 }

@@ -47,14 +47,16 @@ LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], c
   for (int k = 0; k < 3; ++k) stress[k] = dual_product(n, whole, effective[k]);
 }
 
-LANES_INLINE void step_group(const Mazars *c, SolidLanes *p, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 {
+  const Mazars *c = constants;
   const DualSlopes n = {0, tangents ? 3 : 0};
+  const SpectrumApart apart = spectrum_apart(p->strain);
   Spectrum spectrum;
   if (tangents)
-    spectrum = spectrum_of(p->strain);
+    spectrum = spectrum_with_vectors(&apart);
   else
-    spectrum_values(p->strain, spectrum.value);
+    spectrum_values(&apart, spectrum.value);
   Dual strain[3], stress[3], largest, damage;
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
   respond(n, c, strain, p->committed, stress, &largest, &damage);
@@ -73,22 +75,16 @@ LANES_INLINE void step_group(const Mazars *c, SolidLanes *p, bool tangents)
   store_tangents(tangent, p->tangent);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
-{
-  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
-}
-
 /** Points that were never damaged and whose strains, all together, are less than what damages. */
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)
 {
   const Mazars *c = constants;
   const Lanes square = trial_strain_square(&c->elastic, t);
-  *found = (trial_history(t, MAZARS_LARGEST) <= lanes_set(c->threshold)) &
-           (square <= lanes_set(c->threshold * c->threshold));
+  *found = (history[MAZARS_LARGEST] <= lanes_set(c->threshold)) & (square <= lanes_set(c->threshold * c->threshold));
 }
 
 int LANES_NAMED(mazars_update)(const void *constants, const breccia_batch *batch)
 {
   const Mazars *c = constants;
-  return solid_update_lanes(constants, batch, MAZARS_HISTORY, &c->elastic, false, inside, step);
+  return solid_update_lanes(constants, batch, MAZARS_HISTORY, &c->elastic, false, inside, step, NULL);
 }

@@ -35,7 +35,7 @@ static void normal_of(int plane, double sine, double normal[3])
 static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  double system[9], right[3][6] = {{0}}; /* normals through the elasticity; the inverse */
+  double system[9], normals[9], right[3][6] = {{0}}; /* normals through the elasticity; the inverse */
   CoulombReturn out = {.exists = false};
   for (int r = 0; r < set->count; ++r) {
     double normal[3], flow[3];
@@ -43,7 +43,9 @@ static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
     normal_of(set->plane[r], c->sine, normal);
     normal_of(set->plane[r], c->dilation, flow);
     right[r][3 + r] = 1;
+    out.corner[r] = set->plane[r] >= TENSION1 ? c->tensile : c->limit;
     for (int k = 0; k < 3; ++k) {
+      normals[3 * r + k] = normal[k];
       out.stiff_flow[r][k] = lambda * (flow[0] + flow[1] + flow[2]) + twice * flow[k];
       right[r][k] = lambda * (normal[0] + normal[1] + normal[2]) + twice * normal[k];
     }
@@ -56,14 +58,17 @@ static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
           normal[0] * out.stiff_flow[k][0] + normal[1] * out.stiff_flow[k][1] + normal[2] * out.stiff_flow[k][2];
   }
   if (!linear_solve(set->count, system, 6, &right[0][0])) return out;
+  if (set->count == 3 && !linear_solve(3, normals, 1, out.corner)) return out;
   out.exists = true;
   for (int r = 0; r < set->count; ++r)
-    for (int k = 0; k < set->count; ++k) out.inverse[r][k] = right[r][3 + k];
+    for (int k = 0; k < set->count; ++k) out.inverse[r][k] = twice * right[r][3 + k];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3 && set->count < 3; ++k) {
       out.slopes[3 * i + k] = lambda + (i == k ? twice : 0);
       for (int r = 0; r < set->count; ++r) out.slopes[3 * i + k] -= out.stiff_flow[r][i] * right[r][k];
     }
+  for (int r = 0; r < set->count; ++r)
+    for (int k = 0; k < 3; ++k) out.stiff_flow[r][k] /= twice;
   return out;
 }
 

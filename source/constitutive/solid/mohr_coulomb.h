@@ -26,11 +26,11 @@ static const PlaneSet coulomb_sets[COULOMB_SETS] = {
     {3, {TENSION1, TENSION2, TENSION3}},
 };
 
-/** The return of sorted principal stresses to a set of planes: multipliers are `inverse` times what the trial stress is beyond them; each takes its `stiff_flow`
- *  off. */
+/** The return of sorted principal stresses to a set of planes: multipliers, times 2 G, are `inverse` times what the trial stress is beyond them; each takes its
+ *  `stiff_flow` off. Three planes meet in a corner. */
 typedef struct CoulombReturn {
   bool exists;
-  double inverse[3][3], stiff_flow[3][3], slopes[9]; /* d stress / d principal strain */
+  double inverse[3][3], stiff_flow[3][3], corner[3], slopes[9]; /* d stress / d principal strain */
 } CoulombReturn;
 
 typedef struct MohrCoulomb {

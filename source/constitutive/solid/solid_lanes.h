@@ -12,19 +12,10 @@ enum { MOST_HISTORY = 13, SOLID_CHUNK = 128, SOLID_GROUPS = 4 };
 /** `update` of a law that is compiled for each kind of vectors, and how it is chosen: LANES_CHOICE(SolidUpdate, name). */
 typedef int SolidUpdate(const void *constants, const breccia_batch *batch);
 
-/** Elastic trial of points: first invariant, deviator and its norm, and their rows of history. */
+/** Elastic trial of points: first invariant, deviator and its norm. */
 typedef struct TrialLanes {
   Lanes invariant, s[6], length;
-  const double *row[LANES];
 } TrialLanes;
-
-/** Number k of the rows of history. */
-LANES_INLINE Lanes trial_history(const TrialLanes *t, int k)
-{
-  Lanes number = lanes_set(t->row[0][k]);
-  for (int l = 1; l < LANES; ++l) number[l] = t->row[l][k];
-  return number;
-}
 
 /** Bound of principal stresses, for points so far inside that no decomposition is needed: none is larger than a third of the invariant and
  *  2 r, the largest less the smallest no more than 2 sqrt(3) r. @return r = sqrt(J2 / 3) */
@@ -41,8 +32,9 @@ LANES_INLINE Lanes trial_strain_square(const Elasticity *e, const TrialLanes *t)
   return lanes_square(deviator, mean, lanes_set(0));
 }
 
-/** @param[out] found  the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
-typedef void (*SolidInside)(const void *constants, const TrialLanes *trial, LaneMask *found);
+/** @param[in] history  committed
+ *  @param[out] found  the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
+typedef void (*SolidInside)(const void *constants, const TrialLanes *trial, const Lanes *history, LaneMask *found);
 
 /** Points that the sieve leaves. */
 typedef struct SolidLanes {
@@ -53,9 +45,10 @@ typedef struct SolidLanes {
   double *tangent[LANES];
 } SolidLanes;
 
-/** Some groups of points, so that a processor that waits for one has others to work on.
- *  @param[in] tangents  whether they are wanted: a constant where it is asked */
-typedef void (*SolidStep)(const void *constants, SolidLanes *points, int groups, bool tangents);
+/** @param[in] tangents  whether they are wanted: a constant where it is asked */
+typedef void (*SolidStep)(const void *constants, SolidLanes *points, bool tangents);
+/** The same of some groups of points, so that a processor that waits for one has others to work on. */
+typedef void (*SolidSteps)(const void *constants, SolidLanes *points, int groups, bool tangents);
 
 LANES_INLINE Lanes lanes_trace(const Lanes a[6])
 {
@@ -70,7 +63,8 @@ LANES_INLINE Lanes lanes_norm(const Lanes a[6])
 /** Stress of an elastic strain: first invariant, deviator and its norm. */
 LANES_INLINE void elastic_trial_lanes(const Elasticity *e, const Lanes strain[6], TrialLanes *t)
 {
-  const Lanes twice = lanes_set(2 * e->shear), volume = lanes_trace(strain), mean = volume / lanes_set(3);
+  const Lanes twice = lanes_set(2 * e->shear), volume = lanes_trace(strain),
+              mean = lanes_product(volume, lanes_set(1.0 / 3));
   for (int k = 0; k < 6; ++k) t->s[k] = lanes_product(twice, k < 3 ? strain[k] - mean : strain[k]);
   t->invariant = lanes_product(lanes_set(3 * e->bulk), volume);
   t->length = lanes_norm(t->s);
@@ -127,21 +121,20 @@ LANES_INLINE void store_tangents(const Lanes tangent[36], double *const to[LANES
 typedef struct SolidChunk {
   const breccia_batch *batch;
   int first, count, values;
-  double strain[6][SOLID_CHUNK + LANES]; /* tensors, of those that are left */
+  /* Of those that are left: tensors of strain, committed history, then stress in the place of strain; which point it is, and bits of them for each vector of
+   * the chunk. */
+  double strain[6][SOLID_CHUNK + LANES], history[MOST_HISTORY][SOLID_CHUNK + LANES];
   int32_t at[SOLID_CHUNK + LANES];
+  uint8_t bits[SOLID_CHUNK / LANES];
   int left;
 } SolidChunk;
 
-/** The first numbers of rows of history, turned round. @param[in] values, count  of a row, and of those wanted: constants */
-LANES_INLINE void load_rows(const double *from, int values, int count, const int32_t *at, Lanes *out)
+/** Rows of history, turned round. @param[in] values  of a row: two, or four and more; a constant */
+LANES_INLINE void load_rows(const double *from, int values, const int32_t *at, Lanes *out)
 {
-  for (int k = 0; k + QUAD <= count; k += QUAD) lanes_gather_rows(from + k, values, at, out + k);
-  if (count > QUAD && count % QUAD) lanes_gather_rows(from + count - QUAD, values, at, out + count - QUAD);
-  for (int k = 0; k < count && count < QUAD; ++k) {
-    double numbers[LANES];
-    for (int l = 0; l < LANES; ++l) numbers[l] = from[values * at[l] + k];
-    out[k] = lanes_load(numbers);
-  }
+  if (values == 2) lanes_gather_pairs(from, at, out);
+  for (int k = 0; k + QUAD <= values; k += QUAD) lanes_gather_rows(from + k, values, at, out + k);
+  if (values > QUAD && values % QUAD) lanes_gather_rows(from + values - QUAD, values, at, out + values - QUAD);
 }
 
 /** The reverse, of four numbers of rows that are all different. */
@@ -159,11 +152,27 @@ LANES_INLINE void store_quads(const double turned[QUAD][LANES], int values, cons
   }
 }
 
+/** The same of rows of two. */
+LANES_INLINE void store_pairs(const double turned[2][LANES], const int32_t *at, double *to)
+{
+  typedef double Pair __attribute__((vector_size(16)));
+  for (int first = 0; first < LANES; first += QUAD) {
+    const Quad a = quad_load(turned[0] + first), b = quad_load(turned[1] + first);
+    const Pair pairs[QUAD] = {__builtin_shufflevector(a, b, 0, 4), __builtin_shufflevector(a, b, 1, 5),
+                              __builtin_shufflevector(a, b, 2, 6), __builtin_shufflevector(a, b, 3, 7)};
+    for (int l = 0; l < QUAD; ++l) memcpy(to + 2 * (ptrdiff_t)at[first + l], &pairs[l], sizeof pairs[l]);
+  }
+}
+
 /** The reverse, of the first `count` rows. */
 LANES_INLINE void store_rows(const Lanes *numbers, int values, const int32_t *at, int count, double *to)
 {
   double turned[MOST_HISTORY][LANES];
   for (int k = 0; k < values; ++k) lanes_store(turned[k], numbers[k]);
+  if (count == LANES && values == 2) {
+    store_pairs(turned, at, to);
+    return;
+  }
   if (count == LANES && values >= QUAD) {
     for (int k = 0; k + QUAD <= values; k += QUAD) store_quads(turned + k, values, at, to + k);
     if (values % QUAD) store_quads(turned + values - QUAD, values, at, to + values - QUAD);
@@ -173,6 +182,19 @@ LANES_INLINE void store_rows(const Lanes *numbers, int values, const int32_t *at
     for (int k = 0; k < values; ++k) to[values * at[l] + k] = turned[k][l];
 }
 
+/** Lines up the points of some lanes behind those that are left. */
+LANES_INLINE void keep_left(SolidChunk *chunk, unsigned bits, int first, const Lanes strain[6], const Lanes *history)
+{
+  for (int k = 0; k < 6; ++k) lanes_store_some(chunk->strain[k] + chunk->left, bits, 0, strain[k]);
+  for (int k = 0; k < chunk->values; ++k) lanes_store_some(chunk->history[k] + chunk->left, bits, 0, history[k]);
+  for (int l = 0; l < LANES; ++l) {
+    chunk->at[chunk->left] = first + l;
+    chunk->left += (bits & 1u << l) != 0;
+  }
+}
+
+/* Where whole vectors can be written no lane is asked whether it is done: of a mixture of points no processor could guess it. What is written for the others
+ * the step writes again. */
 LANES_INLINE void sieve_chunk(const void *constants, SolidChunk *chunk, const Elasticity *e, bool plastic,
                               SolidInside inside)
 {
@@ -182,93 +204,86 @@ LANES_INLINE void sieve_chunk(const void *constants, SolidChunk *chunk, const El
   if (batch->tangent) elastic_tangent(e, tangent);
   chunk->left = 0;
   for (int first = chunk->first; first <= last; first += LANES) {
-    const bool all = first + LANES <= last + 1;
+    const int count = last + 1 - first < LANES ? last + 1 - first : LANES;
+    const bool all = count == LANES;
+    const double *from = batch->committed + (ptrdiff_t)values * first;
     TrialLanes trial;
-    int32_t at[LANES];
-    for (int l = 0; l < LANES; ++l) { /* beyond the end the last point stands in */
-      at[l] = all || first + l <= last ? first + l : last;
-      trial.row[l] = batch->committed + (ptrdiff_t)values * at[l];
+    Lanes strain[6], elastic[6], history[MOST_HISTORY];
+    static const int32_t each[SLICE] = {0, 1, 2, 3, 4, 5, 6, 7};
+    if (all) {
+      load_rows(from, values, each, history);
+      for (int k = 0; k < 6; ++k) strain[k] = lanes_load(batch->strain[k] + first);
+    } else { /* beyond the end the last point stands in */
+      int32_t at[LANES];
+      for (int l = 0; l < LANES; ++l) at[l] = l < count ? l : count - 1;
+      load_rows(from, values, at, history);
+      for (int k = 0; k < 6; ++k) strain[k] = lanes_gather(batch->strain[k] + first, at);
     }
-    Lanes strain[6], elastic[6], spent[6];
-    if (plastic) load_rows(batch->committed, values, 6, at, spent);
     for (int k = 0; k < 6; ++k) {
-      const double *from = batch->strain[k];
-      if (all) {
-        strain[k] = lanes_load(from + first);
-      } else {
-        strain[k] = lanes_gather(from, at);
-      }
       if (k >= 3) strain[k] = lanes_product(strain[k], lanes_set(0.5));
-      elastic[k] = plastic ? strain[k] - spent[k] : strain[k];
+      elastic[k] = plastic ? strain[k] - history[k] : strain[k];
     }
     elastic_trial_lanes(e, elastic, &trial);
     const Lanes size = trial.length + trial.invariant;
     LaneMask done = size - size == lanes_set(0); /* finite */
     if (!batch->elastic_stage) {
       LaneMask found;
-      inside(constants, &trial, &found);
+      inside(constants, &trial, history, &found);
       done &= found;
     }
+    const unsigned here = (1u << count) - 1, left = lanes_bits(~done) & here;
+    chunk->bits[(first - chunk->first) / LANES] = (uint8_t)left;
+    if (left) keep_left(chunk, left, first, strain, history);
+    if (left == here) continue;
     const Lanes pressure = lanes_product(lanes_set(e->bulk), lanes_trace(elastic));
-    const bool whole = all && !lanes_any(~done), none = all && !lanes_any(done);
-    if (none) {
-      for (int k = 0; k < 6; ++k) lanes_store(chunk->strain[k] + chunk->left, strain[k]);
-      for (int l = 0; l < LANES; ++l) chunk->at[chunk->left++] = at[l];
-      continue;
-    }
     for (int k = 0; k < 6; ++k) {
       const Lanes stress = k < 3 ? trial.s[k] + pressure : trial.s[k];
-      if (whole)
+      if (all)
         lanes_store(batch->stress[k] + first, stress);
       else
-        for (int l = 0; l < LANES; ++l)
-          if (done[l]) batch->stress[k][at[l]] = stress[l];
+        for (int l = 0; l < count; ++l) batch->stress[k][first + l] = stress[l];
     }
-    for (int k = 0; k < values && whole; ++k) /* rows lie side by side */
-      lanes_store(batch->trial + (ptrdiff_t)values * first + LANES * k, lanes_load(trial.row[0] + LANES * k));
-    double tensors[6][LANES];
-    for (int k = 0; k < 6 && !whole; ++k) lanes_store(tensors[k], strain[k]);
-    for (int l = 0; l < LANES && first + l <= last && (!whole || batch->tangent); ++l) {
-      if (!done[l]) {
-        for (int k = 0; k < 6; ++k) chunk->strain[k][chunk->left] = tensors[k][l];
-        chunk->at[chunk->left++] = at[l];
-        continue;
-      }
-      for (int k = 0; k < values && !whole; ++k) batch->trial[(ptrdiff_t)values * at[l] + k] = trial.row[l][k];
-      if (batch->tangent) memcpy(batch->tangent + 36 * at[l], tangent, sizeof tangent);
-    }
+    double *to = batch->trial + (ptrdiff_t)values * first;
+    for (int k = 0; k < values && all; ++k) lanes_store(to + LANES * k, lanes_load(from + LANES * k));
+    for (int k = 0; k < values * count && !all; ++k) to[k] = from[k];
+    for (int l = 0; l < count && batch->tangent; ++l)
+      if (!(left & 1u << l)) memcpy(batch->tangent + 36 * (first + l), tangent, sizeof tangent);
   }
 }
 
-/** Stresses and history of the first `count` points of a group to where they belong. @return the first that could not be integrated, or -1 */
-LANES_INLINE int store_group(const breccia_batch *batch, const SolidLanes *p, int values, const int32_t *at, int count)
+/** Which of the first `count` points of a group could not be integrated: the first of them, or -1. */
+LANES_INLINE int find_bad(const SolidLanes *p, const int32_t *at, int count)
 {
-  int bad = -1;
   Lanes size = lanes_set(0);
   for (int k = 0; k < 6; ++k) size += lanes_absolute(p->stress[k]);
   const LaneMask finite = size - size == lanes_set(0);
-  for (int l = 0; l < count && bad < 0 && lanes_any(~finite); ++l)
-    if (!finite[l]) bad = at[l];
-  store_rows(p->trial, values, at, count, batch->trial);
-  if (count == LANES && at[LANES - 1] - at[0] == LANES - 1) { /* side by side */
-    for (int k = 0; k < 6; ++k) lanes_store(batch->stress[k] + at[0], p->stress[k]);
-    return bad;
-  }
-  double stress[6][LANES];
-  for (int k = 0; k < 6; ++k) lanes_store(stress[k], p->stress[k]);
-  for (int l = 0; l < count; ++l)
-    for (int k = 0; k < 6; ++k) batch->stress[k][at[l]] = stress[k][l];
-  return bad;
+  for (int l = 0; l < count && lanes_any(~finite); ++l)
+    if (!finite[l]) return at[l];
+  return -1;
 }
 
-/** @return the first of the points that are left which could not be integrated, or -1 */
-LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep step, bool tangents)
+/** Stresses of those that are left to where they belong. */
+LANES_INLINE void spread_stresses(const SolidChunk *chunk)
+{
+  int from = 0;
+  for (int n = 0; LANES * n < chunk->count; ++n) {
+    const unsigned bits = chunk->bits[n];
+    if (!bits) continue;
+    for (int k = 0; k < 6; ++k)
+      lanes_spread_some(chunk->batch->stress[k] + chunk->first + LANES * n, bits, chunk->strain[k] + from);
+    from += __builtin_popcount(bits);
+  }
+}
+
+/** @param[in] steps  or NULL: `step`, group by group. @return the first of the points that are left which could not be integrated, or -1 */
+LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep step, SolidSteps steps, bool tangents)
 {
   const breccia_batch *batch = chunk->batch;
   const int values = chunk->values;
   int bad = -1;
   for (int l = 0; l < LANES && chunk->left; ++l) { /* beyond the end the last point stands in */
     for (int k = 0; k < 6; ++k) chunk->strain[k][chunk->left + l] = chunk->strain[k][chunk->left - 1];
+    for (int k = 0; k < values; ++k) chunk->history[k][chunk->left + l] = chunk->history[k][chunk->left - 1];
     chunk->at[chunk->left + l] = chunk->at[chunk->left - 1];
   }
   SolidLanes points[SOLID_GROUPS];
@@ -278,24 +293,29 @@ LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep 
       const int from = first + LANES * groups;
       SolidLanes *p = &points[groups];
       for (int k = 0; k < 6; ++k) p->strain[k] = lanes_load(chunk->strain[k] + from);
-      load_rows(batch->committed, values, values, chunk->at + from, p->committed);
+      for (int k = 0; k < values; ++k) p->committed[k] = lanes_load(chunk->history[k] + from);
       for (int l = 0; l < LANES && tangents; ++l) p->tangent[l] = batch->tangent + 36 * chunk->at[from + l];
     }
-    step(constants, points, groups, tangents);
+    if (steps) steps(constants, points, groups, tangents);
     for (int g = 0; g < groups; ++g) {
-      const int from = first + LANES * g, rest = chunk->left - from,
-                found = store_group(batch, &points[g], values, chunk->at + from, rest < LANES ? rest : LANES);
-      if (bad < 0) bad = found;
+      const int from = first + LANES * g, rest = chunk->left - from, count = rest < LANES ? rest : LANES;
+      if (!steps) step(constants, &points[g], tangents);
+      for (int k = 0; k < 6; ++k) lanes_store(chunk->strain[k] + from, points[g].stress[k]);
+      store_rows(points[g].trial, values, chunk->at + from, count, batch->trial);
+      if (bad < 0) bad = find_bad(&points[g], chunk->at + from, count);
     }
   }
+  spread_stresses(chunk);
   return bad;
 }
 
 /** `update` of a law.
  *  @param[in] history_values  a constant
- *  @param[in] plastic  whether history begins with the plastic strain; otherwise all strain is elastic */
+ *  @param[in] plastic  whether history begins with the plastic strain; otherwise all strain is elastic
+ *  @param[in] step, steps  one of them, the other NULL: constants */
 LANES_INLINE int solid_update_lanes(const void *constants, const breccia_batch *batch, int history_values,
-                                    const Elasticity *e, bool plastic, SolidInside inside, SolidStep step)
+                                    const Elasticity *e, bool plastic, SolidInside inside, SolidStep step,
+                                    SolidSteps steps)
 {
   for (int first = 0; first < batch->count; first += SOLID_CHUNK) {
     const int rest = batch->count - first;
@@ -305,8 +325,8 @@ LANES_INLINE int solid_update_lanes(const void *constants, const breccia_batch *
     chunk.count = rest < SOLID_CHUNK ? rest : SOLID_CHUNK;
     chunk.values = history_values;
     sieve_chunk(constants, &chunk, e, plastic, inside);
-    const int bad =
-        batch->tangent ? step_chunk(constants, &chunk, step, true) : step_chunk(constants, &chunk, step, false);
+    const int bad = batch->tangent ? step_chunk(constants, &chunk, step, steps, true)
+                                   : step_chunk(constants, &chunk, step, steps, false);
     if (bad >= 0) return bad;
   }
   return -1;

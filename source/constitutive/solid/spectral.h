@@ -65,6 +65,14 @@ LANES_INLINE SpectrumApart spectrum_apart(const Lanes a[6])
   return x;
 }
 
+/** Eigenvalues in descending order, from the two that do not stand apart. */
+LANES_INLINE void spectrum_sort(const SpectrumApart *x, Lanes high, Lanes low, Lanes value[3])
+{
+  value[0] = (x->mean + lanes_choose(x->least, high, x->value)) * x->scale;
+  value[1] = (x->mean + lanes_choose(x->least, low, high)) * x->scale;
+  value[2] = (x->mean + lanes_choose(x->least, x->value, low)) * x->scale;
+}
+
 /** A symmetric tensor in parts that need no vectors. */
 typedef struct SpectrumParts {
   Lanes value[3]; /* in descending order */
@@ -74,32 +82,29 @@ typedef struct SpectrumParts {
 } SpectrumParts;
 
 /** Eigenvalues to a few roundings of the largest component, however close they are: the two that do not stand apart are what b less the third leaves. */
-LANES_INLINE SpectrumParts spectrum_parts(const Lanes a[6])
+LANES_INLINE SpectrumParts spectrum_parts(const SpectrumApart *x)
 {
-  const SpectrumApart x = spectrum_apart(a);
-  const Lanes middle = lanes_product(lanes_set(-0.5), x.value), part = lanes_set(3) * middle,
-              shorten = lanes_set(1) / (x.adjugate[XX] + x.adjugate[YY] + x.adjugate[ZZ]);
+  const Lanes middle = lanes_product(lanes_set(-0.5), x->value), part = lanes_set(3) * middle,
+              shorten = lanes_set(1) / (x->adjugate[XX] + x->adjugate[YY] + x->adjugate[ZZ]);
   SpectrumParts out;
-  out.least = x.least;
+  out.least = x->least;
   for (int k = 0; k < 6; ++k) {
-    out.alone[k] = lanes_product(x.adjugate[k], shorten);
-    out.pair[k] = x.b[k] + part * out.alone[k];
+    out.alone[k] = lanes_product(x->adjugate[k], shorten);
+    out.pair[k] = x->b[k] + part * out.alone[k];
     if (k < 3) out.pair[k] -= middle;
   }
   const Lanes *pair = out.pair;
   out.radius = lanes_root(lanes_square(pair[XX], pair[YY], pair[ZZ]) * lanes_set(0.5) +
                           lanes_square(pair[XY], pair[YZ], pair[ZX]));
   const Lanes high = middle + out.radius, low = middle - out.radius;
-  out.value[0] = (x.mean + lanes_choose(x.least, high, x.value)) * x.scale;
-  out.value[1] = (x.mean + lanes_choose(x.least, low, high)) * x.scale;
-  out.value[2] = (x.mean + lanes_choose(x.least, x.value, low)) * x.scale;
+  spectrum_sort(x, high, low, out.value);
   return out;
 }
 
 /** Eigenvalues in descending order. */
-LANES_INLINE void spectrum_values(const Lanes a[6], Lanes value[3])
+LANES_INLINE void spectrum_values(const SpectrumApart *x, Lanes value[3])
 {
-  const SpectrumParts parts = spectrum_parts(a);
+  const SpectrumParts parts = spectrum_parts(x);
   for (int k = 0; k < 3; ++k) value[k] = parts.value[k];
 }
 
@@ -120,10 +125,9 @@ LANES_INLINE void spectral_tensor_of_parts(const SpectrumParts *s, const Lanes v
 
 /** Eigenvalues and orthonormal eigenvectors, as well: the vector that stands apart is the longest column of the adjugate, which is well conditioned, and the
  *  others follow from one rotation in the plane across it (after Eberly, A robust eigensolver for 3x3 symmetric matrices, 2014). */
-LANES_INLINE Spectrum spectrum_of(const Lanes a[6])
+LANES_INLINE Spectrum spectrum_with_vectors(const SpectrumApart *x)
 {
-  const SpectrumApart x = spectrum_apart(a);
-  const Lanes zero = lanes_set(0), one = lanes_set(1), half = lanes_set(0.5), *b = x.b, *column = x.adjugate;
+  const Lanes zero = lanes_set(0), one = lanes_set(1), half = lanes_set(0.5), *b = x->b, *column = x->adjugate;
   const LaneMask first = (column[XX] >= column[YY]) & (column[XX] >= column[ZZ]), second = column[YY] >= column[ZZ];
   Lanes v[3] = {lanes_choose(first, column[XX], lanes_choose(second, column[XY], column[ZX])),
                 lanes_choose(first, column[XY], lanes_choose(second, column[YY], column[YZ])),
@@ -156,26 +160,14 @@ LANES_INLINE Spectrum spectrum_of(const Lanes a[6])
   const Lanes cosine = lanes_choose(along, c, s), sine = lanes_choose(along, s, c);
   Spectrum out;
   const Lanes high = middle + radius, low = middle - radius;
-  out.value[0] = (x.mean + lanes_choose(x.least, high, x.value)) * x.scale;
-  out.value[1] = (x.mean + lanes_choose(x.least, low, high)) * x.scale;
-  out.value[2] = (x.mean + lanes_choose(x.least, x.value, low)) * x.scale;
+  spectrum_sort(x, high, low, out.value);
   for (int k = 0; k < 3; ++k) {
     const Lanes to = lanes_product(cosine, u[k]) + sine * w[k], across = lanes_cross(cosine, w[k], sine, u[k]);
-    out.vector[0][k] = lanes_choose(x.least, to, v[k]);
-    out.vector[1][k] = lanes_choose(x.least, across, to);
-    out.vector[2][k] = lanes_choose(x.least, v[k], across);
+    out.vector[0][k] = lanes_choose(x->least, to, v[k]);
+    out.vector[1][k] = lanes_choose(x->least, across, to);
+    out.vector[2][k] = lanes_choose(x->least, v[k], across);
   }
   return out;
-}
-
-/** The symmetric tensor with these eigenvalues and the spectrum's eigenvectors. */
-LANES_INLINE void spectral_tensor(const Spectrum *s, const Lanes value[3], Lanes tensor[6])
-{
-  for (int k = 0; k < 6; ++k) {
-    tensor[k] = lanes_set(0);
-    for (int a = 0; a < 3; ++a)
-      tensor[k] += value[a] * lanes_product(s->vector[a][symmetric_row[k]], s->vector[a][symmetric_column[k]]);
-  }
 }
 
 /** Tangent of an isotropic tensor function: principal stresses, and their derivatives to principal strains [3][3], on the spectrum of
