@@ -26,7 +26,7 @@ static double elastic_zz(const Material *m)
   return m->bulk + 4 * m->shear / 3;
 }
 
-/* Stress zz that is nothing. Open cracks that dilate have a last bit left that never goes, however far they are strained: that is nothing by the second one. */
+/* Open cracks that dilate have a last bit of stress left that never goes: that is nothing by the second one only. */
 static const double SHARP = 1e-12, CLOSE = 1e-9;
 
 /** True if the stress zz of point i of a batch is nothing, by this part of its other stresses and of what its strain zz would make
@@ -82,7 +82,7 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
  *  not end: at corners, in softening, and with tangents that are not those of whole steps. */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
-  enum { MOST_ITERATIONS = 20 };
+  enum { QUICK_ITERATIONS = 6, MOST_ITERATIONS = 20 };
   double local[BATCH * 36], begin[BATCH], *const tangent = batch->tangent;
   memcpy(begin, strain_zz, sizeof *begin * (size_t)batch->count);
   batch->tangent = tangent ? tangent : local;
@@ -90,18 +90,17 @@ int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_
     int bad = m->law->update(m->constants, batch), worst = -1;
     if (bad >= 0) return bad;
     for (int i = 0; i < batch->count; ++i) {
-      if (is_free_of_zz(m, batch, i, SHARP)) continue;
-      const double stiffness = batch->tangent[36 * i + 7 * ZZ], elastic = batch->stress[ZZ][i] / elastic_zz(m),
-                   step = stiffness > 0 ? batch->stress[ZZ][i] / stiffness : elastic;
-      double most = fabs(elastic);
-      for (int k = 0; k < 6; ++k) most = fmax(most, fabs(batch->strain[k][i]));
-      if (fabs(step) > 1e-3 * most && is_free_of_zz(m, batch, i, CLOSE)) continue;
+      if (is_free_of_zz(m, batch, i, iteration > QUICK_ITERATIONS ? CLOSE : SHARP)) continue;
       worst = i;
       if (iteration == MOST_ITERATIONS) {
         if (!bisect_zz(m, batch, i, begin[i], strain_zz)) return i;
         continue;
       }
       /* No further than the point is strained by now, or elastic stiffness would have it: next to nothing divided by no stiffness leads out of numbers. */
+      const double stiffness = batch->tangent[36 * i + 7 * ZZ], elastic = batch->stress[ZZ][i] / elastic_zz(m),
+                   step = stiffness > 0 ? batch->stress[ZZ][i] / stiffness : elastic;
+      double most = fabs(elastic);
+      for (int k = 0; k < 6; ++k) most = fmax(most, fabs(batch->strain[k][i]));
       strain_zz[i] -= copysign(fmin(fabs(step), most), step);
     }
     if (worst < 0 || iteration == MOST_ITERATIONS) break;
