@@ -26,7 +26,8 @@ static double elastic_zz(const Material *m)
   return m->bulk + 4 * m->shear / 3;
 }
 
-/* Open cracks that dilate have a last bit of stress left that never goes: that is nothing by the second one only. */
+/* Stress zz that is nothing, as a part of what stands beside it. Open cracks that dilate keep a last bit however far they are strained: they
+ * are held to the second one. */
 static const double SHARP = 1e-12, CLOSE = 1e-9;
 
 /** True if the stress zz of point i of a batch is nothing, by this part of its other stresses and of what its strain zz would make
@@ -39,30 +40,28 @@ static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i, 
 }
 
 /** Strain zz of one point where Newton's method does not end: between two strains whose stresses zz differ in sign. The stress of some
- *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken. Others have next to none left and come
- *  no nearer to none (open cracks that dilate): then the first strain where it is so.
+ *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken.
  *  @param[in] from  where to begin
+ *  @param[in] part  on the way to a change of sign, the first strain is taken whose stress is nothing by this part
  *  @return true if it was found */
-static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double from, double *strain_zz)
+static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double from, double part,
+                      double *strain_zz)
 {
   enum { MOST_DOUBLINGS = 60, MOST_HALVINGS = 200 };
   breccia_batch one = batch_part(batch, m, 6, at, 1);
-  double *const x = strain_zz + at, ends[2] = {from, from}, values[2], close = NAN;
+  double *const x = strain_zz + at, ends[2] = {from, from}, values[2];
   *x = from;
   if (m->law->update(m->constants, &one) >= 0) return false;
+  if (is_free_of_zz(m, &one, 0, part)) return true;
   values[0] = values[1] = one.stress[ZZ][0];
   double step = -values[0] / elastic_zz(m);
   for (int n = 0; n < MOST_DOUBLINGS && values[0] * values[1] > 0; ++n, step *= 2) {
-    if (isnan(close) && is_free_of_zz(m, &one, 0, CLOSE)) close = *x;
     ends[0] = ends[1];
     values[0] = values[1];
     *x = ends[1] += step;
-    if (m->law->update(m->constants, &one) >= 0) break;
+    if (m->law->update(m->constants, &one) >= 0) return false;
     values[1] = one.stress[ZZ][0];
-  }
-  if (!(values[0] * values[1] <= 0)) {
-    *x = close;
-    return !isnan(close) && m->law->update(m->constants, &one) < 0;
+    if (values[0] * values[1] > 0 && is_free_of_zz(m, &one, 0, part)) return true;
   }
   for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0, SHARP); ++n) {
     /* The secant where it lies well inside, otherwise the middle. */
@@ -75,33 +74,46 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
   }
   if (is_free_of_zz(m, &one, 0, SHARP)) return true;
   *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
-  return m->law->update(m->constants, &one) < 0;
+  return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
+}
+
+/** How far the points of a batch are strained as they begin, or as elastic stiffness would have them. */
+static void find_strained(const Material *m, const breccia_batch *batch, double strained[BATCH])
+{
+  for (int i = 0; i < batch->count; ++i) {
+    strained[i] = fabs(batch->stress[ZZ][i]) / elastic_zz(m);
+    for (int k = 0; k < 6; ++k) strained[i] = fmax(strained[i], fabs(batch->strain[k][i]));
+  }
 }
 
 /** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
- *  not end: at corners, in softening, and with tangents that are not those of whole steps. */
+ *  not end: at corners, in softening, and with tangents that are not those of whole steps; and for those where it ran away, as next to no
+ *  stress divided by next to no stiffness leads out of numbers. */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
-  enum { QUICK_ITERATIONS = 6, MOST_ITERATIONS = 20 };
-  double local[BATCH * 36], begin[BATCH], *const tangent = batch->tangent;
+  enum { MOST_ITERATIONS = 20 };
+  static const double far = 10, out_of_sight = 1e6; /* times what the point is strained as it begins */
+  double local[BATCH * 36], begin[BATCH], strained[BATCH], *const tangent = batch->tangent;
+  bool settled[BATCH] = {false};
   memcpy(begin, strain_zz, sizeof *begin * (size_t)batch->count);
   batch->tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
     int bad = m->law->update(m->constants, batch), worst = -1;
     if (bad >= 0) return bad;
+    if (iteration == 0) find_strained(m, batch, strained);
     for (int i = 0; i < batch->count; ++i) {
-      if (is_free_of_zz(m, batch, i, iteration > QUICK_ITERATIONS ? CLOSE : SHARP)) continue;
+      if (settled[i]) continue;
+      const bool is_free = is_free_of_zz(m, batch, i, SHARP), last = iteration == MOST_ITERATIONS;
+      if (is_free && fabs(strain_zz[i]) <= far * strained[i]) continue;
       worst = i;
-      if (iteration == MOST_ITERATIONS) {
-        if (!bisect_zz(m, batch, i, begin[i], strain_zz)) return i;
-        continue;
+      if (!is_free && !last) {
+        const double stiffness = batch->tangent[36 * i + 7 * ZZ];
+        strain_zz[i] -= batch->stress[ZZ][i] / (stiffness > 0 ? stiffness : elastic_zz(m));
+        if (fabs(strain_zz[i]) <= out_of_sight * strained[i]) continue;
       }
-      /* No further than the point is strained by now, or elastic stiffness would have it: next to nothing divided by no stiffness leads out of numbers. */
-      const double stiffness = batch->tangent[36 * i + 7 * ZZ], elastic = batch->stress[ZZ][i] / elastic_zz(m),
-                   step = stiffness > 0 ? batch->stress[ZZ][i] / stiffness : elastic;
-      double most = fabs(elastic);
-      for (int k = 0; k < 6; ++k) most = fmax(most, fabs(batch->strain[k][i]));
-      strain_zz[i] -= copysign(fmin(fabs(step), most), step);
+      settled[i] = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], SHARP, strain_zz)) ||
+                   bisect_zz(m, batch, i, begin[i], CLOSE, strain_zz);
+      if (!settled[i]) return i;
     }
     if (worst < 0 || iteration == MOST_ITERATIONS) break;
   }
