@@ -77,45 +77,132 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
   return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
 }
 
-/** How far the points of a batch are strained as they begin, or as elastic stiffness would have them. */
-static void find_strained(const Material *m, const breccia_batch *batch, double strained[BATCH])
+enum { PACKED_VALUES = 16 }; /* of histories of points that are packed, at most */
+
+/** Points of a batch that are still looked for, side by side: few of them need many iterations, and each evaluation of the others would be the same again. */
+typedef struct Packed {
+  int count, of[BATCH]; /* which points of the whole batch */
+  double strain[6][BATCH], stress[6][BATCH], length[BATCH], tangent[36 * BATCH];
+  double committed[PACKED_VALUES * BATCH], trial[PACKED_VALUES * BATCH];
+} Packed;
+
+/** Takes points out of a batch, the whole one or the packed one itself. @param[in] chosen  [count] rising numbers */
+static void pack(Packed *packed, const Material *m, const breccia_batch *from, bool is_packed, const int *chosen,
+                 int count)
 {
-  for (int i = 0; i < batch->count; ++i) {
-    strained[i] = fabs(batch->stress[ZZ][i]) / elastic_zz(m);
-    for (int k = 0; k < 6; ++k) strained[i] = fmax(strained[i], fabs(batch->strain[k][i]));
+  const size_t values = (size_t)m->history_values;
+  for (int j = 0; j < count; ++j) {
+    const int i = chosen[j];
+    if (is_packed && i == j) continue;
+    packed->of[j] = is_packed ? packed->of[i] : i;
+    for (int k = 0; k < 6; ++k) packed->strain[k][j] = from->strain[k][i];
+    if (from->length) packed->length[j] = from->length[i];
+    memmove(packed->committed + values * (size_t)j, from->committed + values * (size_t)i, sizeof(double) * values);
+    memmove(packed->trial + values * (size_t)j, from->trial + values * (size_t)i, sizeof(double) * values);
   }
+  packed->count = count;
+}
+
+static breccia_batch packed_batch(Packed *packed, const breccia_batch *whole)
+{
+  breccia_batch batch = *whole;
+  batch.count = packed->count;
+  batch.committed = packed->committed;
+  batch.trial = packed->trial;
+  if (whole->tangent) batch.tangent = packed->tangent;
+  batch.length = whole->length ? packed->length : NULL;
+  for (int k = 0; k < 6; ++k) {
+    batch.strain[k] = packed->strain[k];
+    batch.stress[k] = packed->stress[k];
+  }
+  return batch;
+}
+
+/** What the law answered for a packed point, to its place in the whole batch. */
+static void give_back(const Packed *packed, const Material *m, int j, const breccia_batch *whole, double *strain_zz)
+{
+  const int i = packed->of[j];
+  const size_t values = (size_t)m->history_values;
+  strain_zz[i] = packed->strain[ZZ][j];
+  for (int k = 0; k < 6; ++k) whole->stress[k][i] = packed->stress[k][j];
+  memcpy(whole->trial + values * (size_t)i, packed->trial + values * (size_t)j, sizeof(double) * values);
+  if (whole->tangent) memcpy(whole->tangent + 36 * i, packed->tangent + 36 * j, sizeof(double) * 36);
+}
+
+/** How far a point is strained as it begins, or as elastic stiffness would have it. */
+static double strained_by(const Material *m, const breccia_batch *batch, int i)
+{
+  double most = fabs(batch->stress[ZZ][i]) / elastic_zz(m);
+  for (int k = 0; k < 6; ++k)
+    if (fabs(batch->strain[k][i]) > most) most = fabs(batch->strain[k][i]);
+  return most;
+}
+
+typedef enum Look { IS_FREE, GOES_ON, SETTLED, FAILED } Look;
+
+/** Looks at the stress zz of a point and, where it is not nothing, goes on to another strain zz.
+ *  @param[in] slope  of stress zz over strain zz @param[in] begin, strained  strain zz and how far the point was strained, as the search began */
+static Look take_step(const Material *m, const breccia_batch *batch, int i, bool last, double slope, double begin,
+                      double strained, double *strain_zz)
+{
+  static const double far = 10, out_of_sight = 1e6; /* times what the point is strained as it begins */
+  const bool is_free = is_free_of_zz(m, batch, i, SHARP);
+  if (is_free && fabs(strain_zz[i]) <= far * strained) return IS_FREE;
+  if (!is_free && !last) {
+    strain_zz[i] -= batch->stress[ZZ][i] / (slope > 0 ? slope : elastic_zz(m));
+    if (fabs(strain_zz[i]) <= out_of_sight * strained) return GOES_ON;
+  }
+  const bool found = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], SHARP, strain_zz)) ||
+                     bisect_zz(m, batch, i, begin, CLOSE, strain_zz);
+  return found ? SETTLED : FAILED;
 }
 
 /** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
  *  not end: at corners, in softening, and with tangents that are not those of whole steps; and for those where it ran away, as next to no
- *  stress divided by next to no stiffness leads out of numbers. */
+ *  stress divided by next to no stiffness leads out of numbers. Where nobody wants tangents the law makes them once only, as they take it as long again
+ *  as stresses: then the slope is that between the last two strains. */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
   enum { MOST_ITERATIONS = 20 };
-  static const double far = 10, out_of_sight = 1e6; /* times what the point is strained as it begins */
-  double local[BATCH * 36], begin[BATCH], strained[BATCH], *const tangent = batch->tangent;
-  bool settled[BATCH] = {false};
+  const bool may_pack = !m->remote && m->history_values <= PACKED_VALUES;
+  double local[BATCH * 36], begin[BATCH], strained[BATCH], last_zz[BATCH],
+      last_stress[BATCH], *const tangent = batch->tangent;
+  bool settled[BATCH] = {false}, is_packed = false;
+  Packed packed;
   memcpy(begin, strain_zz, sizeof *begin * (size_t)batch->count);
-  batch->tangent = tangent ? tangent : local;
+  breccia_batch now = *batch; /* the whole one, or what is left of it */
+  double *zz = strain_zz;
+  now.tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
-    int bad = m->law->update(m->constants, batch), worst = -1;
-    if (bad >= 0) return bad;
-    if (iteration == 0) find_strained(m, batch, strained);
-    for (int i = 0; i < batch->count; ++i) {
-      if (settled[i]) continue;
-      const bool is_free = is_free_of_zz(m, batch, i, SHARP), last = iteration == MOST_ITERATIONS;
-      if (is_free && fabs(strain_zz[i]) <= far * strained[i]) continue;
-      worst = i;
-      if (!is_free && !last) {
-        const double stiffness = batch->tangent[36 * i + 7 * ZZ];
-        strain_zz[i] -= batch->stress[ZZ][i] / (stiffness > 0 ? stiffness : elastic_zz(m));
-        if (fabs(strain_zz[i]) <= out_of_sight * strained[i]) continue;
-      }
-      settled[i] = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], SHARP, strain_zz)) ||
-                   bisect_zz(m, batch, i, begin[i], CLOSE, strain_zz);
-      if (!settled[i]) return i;
+    const int bad = m->law->update(m->constants, &now);
+    int left[BATCH], count = 0;
+    if (bad >= 0) return is_packed ? packed.of[bad] : bad;
+    for (int i = 0; i < now.count; ++i) {
+      const int of = is_packed ? packed.of[i] : i;
+      if (settled[of]) continue;
+      if (iteration == 0) strained[i] = strained_by(m, &now, i);
+      const double stress = now.stress[ZZ][i], apart = now.tangent || zz[i] == last_zz[of] ? 0 : zz[i] - last_zz[of];
+      const double slope = now.tangent  ? now.tangent[36 * i + 7 * ZZ]
+                           : apart != 0 ? (stress - last_stress[of]) / apart
+                                        : 0;
+      last_zz[of] = zz[i];
+      last_stress[of] = stress;
+      const Look look = take_step(m, &now, i, iteration == MOST_ITERATIONS, slope, begin[of], strained[of], zz);
+      if (look == FAILED) return of;
+      settled[of] = look == SETTLED;
+      if (look == GOES_ON)
+        left[count++] = i;
+      else if (is_packed)
+        give_back(&packed, m, i, batch, strain_zz);
     }
-    if (worst < 0 || iteration == MOST_ITERATIONS) break;
+    if (!count) break;
+    now.tangent = tangent;
+    if (is_packed || (may_pack && 2 * count <= now.count)) {
+      pack(&packed, m, &now, is_packed, left, count);
+      now = packed_batch(&packed, batch);
+      zz = packed.strain[ZZ];
+      is_packed = true;
+    }
   }
   for (int i = 0; tangent && i < batch->count; ++i) {
     double *d = tangent + 36 * i;
