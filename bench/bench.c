@@ -217,7 +217,7 @@ static void measure(breccia_model *model, const Case *c, const int *threads, int
     t->law[at] = law_seconds(d);
     double start = busy_seconds();
     if (plain) c->plain(plain);
-    t->plain[at] = busy_seconds() - start;
+    t->plain[at] = plain ? busy_seconds() - start : 0; /* none: exactly nothing, which is told as such */
     t->ratio[at] = t->plain[at] / (t->force[at] - (strcmp(c->law, "elastic") ? t->law[at] : 0));
     t->share[at] = t->step[0][at] / t->force[at];
   }

@@ -38,7 +38,7 @@ if len(models) == len(MODELS):
           for model in within),
         *([f"{model.words}: largest moment, kN m", f"{MOMENT}", f"{by_shear:.1f} by V_c", f"{model.load:.1f}", f"{0.85 * MOMENT:.1f} to {1.15 * MOMENT:.1f}"] for model in within)]))
     at = (1, 2.5, 5, 10, 15, 20)
-    between("models", table(["model", "largest moment, kN m", "at, mm (± 0.3 mm)", *(f"kN m at {mm:g} mm (± {0.5 if mm < YIELDS[0] else 1} kN m)" for mm in at), "time, s of a processor"],
+    between("models", table(["model", "largest moment, kN m (± 1 kN m)", "at, mm (± 0.3 mm)", *(f"kN m at {mm:g} mm (± {0.5 if mm < YIELDS[0] else 1} kN m)" for mm in at), "time, s of a processor"],
                             [["test", f"{MOMENT}", f"{DEFLECTION}", *(f"{of_test(mm):.1f}" for mm in at), ""]] +
                             [[model.words, f"{model.load:.1f} ({100 * (model.load / MOMENT - 1):+.0f} %)", f"{model.at:.1f}",
                               *("failed" if mm > model.lost else f"{model.carried(mm):.1f}" for mm in at), f"{model.seconds:.0f}"] for model in models]))

@@ -41,7 +41,7 @@ if len(models) == len(MODELS):
     between("pulled bars", table(["bar of the concrete of", "spacing of", "crack spends, of G_F"],
                                  [[words, f"{rows} rows, {height / rows:.1f} mm", f"{spent_by_a_pulled_bar(strength, rows, height):.2f}"] for words, strength, height, rows in bars]))
     at = (1, 2, 4, 6, 8)
-    between("models", table(["model", "largest load, kN", "at, mm (± 0.3 mm)", *(f"kN at {mm} mm (± 5 kN)" for mm in at), "time, s of a processor"],
+    between("models", table(["model", "largest load, kN (± 5 kN)", "at, mm (± 1 mm)", *(f"kN at {mm} mm (± 5 kN)" for mm in at), "time, s of a processor"],
                             [["test", f"{LOAD}", f"{DEFLECTION}", *(f"{dict(measured)[mm]:.0f}" for mm in at), ""]] +
                             [[model.words, f"{model.load:.0f} ({100 * (model.load / LOAD - 1):+.0f} %)", f"{model.at:.1f}",
                               *("failed" if mm > model.lost else f"{model.carried(mm):.0f}" for mm in at), f"{model.seconds:.0f}"] for model in models]))

@@ -382,7 +382,7 @@ static Points plane_stress_points(Material *m)
                            .run_count = 1,
                            .materials = m,
                            .material_count = 1,
-                           .length = NAN};
+                           .length = 0.07};
   assert_int_equal(points_create(&points, &spec, NULL), 0);
   return points;
 }
@@ -417,6 +417,59 @@ static void plane_stress_holds_whatever_the_path(void **state)
       points_commit(&points);
     }
     points_destroy(&points);
+    material_destroy(&m);
+  }
+}
+
+/** A point finds the same strain across the plane beside others that need more iterations, or fewer. */
+static void plane_stress_depends_on_no_other_point(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Points together = plane_stress_points(&m), alone = plane_stress_points(&m);
+    uint64_t seed[SLICE];
+    for (int i = 0; i < SLICE; ++i) seed[i] = 90 + (uint64_t)i;
+    for (int step = 0; step < 200; ++step) {
+      for (int i = 0; i < SLICE; ++i) {
+        double e[6];
+        for (int k = 0; k < 6; ++k) e[k] = together.strain[k][i];
+        sample_wander(&seed[i], samples[n].strain, samples[n].strain / (i % 3 ? 1e4 : 10), e);
+        for (int k = 0; k < 6; ++k)
+          if (k == XX || k == YY || k == XY) together.strain[k][i] = alone.strain[k][i] = e[k];
+      }
+      points_keep_tangents(&together, step % 2, NULL);
+      points_keep_tangents(&alone, step % 2, NULL);
+      assert_int_equal(points_update(&together, 0, SLICE, together.strain, together.stress), -1);
+      for (int i = 0; i < SLICE; ++i) {
+        double *strain[6], *stress[6];
+        for (int k = 0; k < 6; ++k) {
+          strain[k] = alone.strain[k] + i;
+          stress[k] = alone.stress[k] + i;
+        }
+        assert_int_equal(points_update(&alone, i, 1, strain, stress), -1);
+      }
+      for (int k = 0; k < 6; ++k) {
+        if (memcmp(together.strain[k], alone.strain[k], sizeof(double) * SLICE))
+          fail_msg("%s: strain %d in step %d", samples[n].name, k, step);
+        if (memcmp(together.stress[k], alone.stress[k], sizeof(double) * SLICE))
+          fail_msg("%s: stress %d in step %d", samples[n].name, k, step);
+      }
+      for (int i = 0; i < SLICE && step % 2; ++i) {
+        double tangents[2][36];
+        points_tangent(&together, i, tangents[0]);
+        points_tangent(&alone, i, tangents[1]);
+        if (memcmp(tangents[0], tangents[1], sizeof *tangents))
+          fail_msg("%s: tangent of point %d in step %d", samples[n].name, i, step);
+      }
+      points_commit(&together);
+      points_commit(&alone);
+      for (int i = 0; i < SLICE; ++i)
+        if (memcmp(points_history(&together, i), points_history(&alone, i), sizeof(double) * (size_t)m.history_values))
+          fail_msg("%s: history of point %d in step %d", samples[n].name, i, step);
+    }
+    points_destroy(&together);
+    points_destroy(&alone);
     material_destroy(&m);
   }
 }
@@ -602,6 +655,7 @@ int main(void)
       cmocka_unit_test(closed_cycles_of_strain_take_work),
       cmocka_unit_test(smaller_steps_change_little),
       cmocka_unit_test(plane_stress_holds_whatever_the_path),
+      cmocka_unit_test(plane_stress_depends_on_no_other_point),
       cmocka_unit_test(plane_stress_holds_where_cracks_stand_open),
       cmocka_unit_test(a_strain_that_is_no_number_is_reported),
       cmocka_unit_test(the_elastic_stage_is_elastic),
