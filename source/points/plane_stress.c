@@ -41,15 +41,16 @@ static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i, 
 
 /** Strain zz of one point where Newton's method does not end: between two strains whose stresses zz differ in sign. The stress of some
  *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken.
- *  @param[in] from  where to begin
+ *  @param[in] from, most  where to begin, and the largest strain that is looked at
  *  @param[in] part  on the way to a change of sign, the first strain is taken whose stress is nothing by this part
  *  @return true if it was found */
-static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double from, double part,
+static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double from, double most, double part,
                       double *strain_zz)
 {
   enum { MOST_DOUBLINGS = 60, MOST_HALVINGS = 200 };
   breccia_batch one = batch_part(batch, m, 6, at, 1);
   double *const x = strain_zz + at, ends[2] = {from, from}, values[2];
+  if (!(fabs(from) <= most)) return false;
   *x = from;
   if (m->law->update(m->constants, &one) >= 0) return false;
   if (is_free_of_zz(m, &one, 0, part)) return true;
@@ -59,10 +60,11 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
     ends[0] = ends[1];
     values[0] = values[1];
     *x = ends[1] += step;
-    if (m->law->update(m->constants, &one) >= 0) return false;
+    if (fabs(*x) > most || m->law->update(m->constants, &one) >= 0) return false;
     values[1] = one.stress[ZZ][0];
     if (values[0] * values[1] > 0 && is_free_of_zz(m, &one, 0, part)) return true;
   }
+  if (!(values[0] * values[1] <= 0)) return false;
   for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0, SHARP); ++n) {
     /* The secant where it lies well inside, otherwise the middle. */
     const double share = values[0] / (values[0] - values[1]);
@@ -74,7 +76,7 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
   }
   if (is_free_of_zz(m, &one, 0, SHARP)) return true;
   *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
-  return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
+  return m->law->update(m->constants, &one) < 0;
 }
 
 enum { PACKED_VALUES = 16 }; /* of histories of points that are packed, at most */
@@ -129,80 +131,111 @@ static void give_back(const Packed *packed, const Material *m, int j, const brec
   if (whole->tangent) memcpy(whole->tangent + 36 * i, packed->tangent + 36 * j, sizeof(double) * 36);
 }
 
-/** How far a point is strained as it begins, or as elastic stiffness would have it. */
-static double strained_by(const Material *m, const breccia_batch *batch, int i)
+/** The strain zz of a point, as it is looked for. */
+typedef struct Search {
+  double begin, most; /* where it begins, and the largest that counts */
+  double zz, stress;  /* the last one, and its stress */
+  double before;      /* how large the stress before that was */
+  double sides[2];    /* the last ones with a stress of either sign */
+  bool found[2];      /* whether there are any */
+  bool settled;
+} Search;
+
+/* Times as far as a point is strained as it begins, or as elastic stiffness would have it: no answer lies further, as next to no stress divided by next to
+ * no stiffness leads anywhere; and no question, as laws are not made for strains that large. */
+static const double FAR = 10, OUT_OF_SIGHT = 1000;
+
+static Search begin_search(const Material *m, const breccia_batch *batch, int i)
 {
-  double most = fabs(batch->stress[ZZ][i]) / elastic_zz(m);
+  double strained = fabs(batch->stress[ZZ][i]) / elastic_zz(m);
   for (int k = 0; k < 6; ++k)
-    if (fabs(batch->strain[k][i]) > most) most = fabs(batch->strain[k][i]);
-  return most;
+    if (fabs(batch->strain[k][i]) > strained) strained = fabs(batch->strain[k][i]);
+  return (Search){
+      .begin = batch->strain[ZZ][i], .most = fmax(FAR * strained, 1), .before = INFINITY, .stress = INFINITY};
+}
+
+/** Where to look next: by the tangent, or else by the slope between the last two strains, which stays between two whose stresses differ in sign and takes their middle
+ *  where it has not halved the stress in two steps. */
+static double next_zz(const Material *m, const breccia_batch *batch, int i, const Search *s)
+{
+  const double zz = batch->strain[ZZ][i], stress = batch->stress[ZZ][i];
+  double slope = batch->tangent ? batch->tangent[36 * i + 7 * ZZ] : 0;
+  if (!batch->tangent && zz != s->zz) slope = (stress - s->stress) / (zz - s->zz);
+  const double next = zz - stress / (slope > 0 ? slope : elastic_zz(m));
+  if (batch->tangent || !s->found[0] || !s->found[1]) return next;
+  const double low = fmin(s->sides[0], s->sides[1]), high = fmax(s->sides[0], s->sides[1]);
+  return next > low && next < high && fabs(stress) <= 0.5 * s->before ? next : 0.5 * (low + high);
 }
 
 typedef enum Look { IS_FREE, GOES_ON, SETTLED, FAILED } Look;
 
-/** Looks at the stress zz of a point and, where it is not nothing, goes on to another strain zz.
- *  @param[in] slope  of stress zz over strain zz @param[in] begin, strained  strain zz and how far the point was strained, as the search began */
-static Look take_step(const Material *m, const breccia_batch *batch, int i, bool last, double slope, double begin,
-                      double strained, double *strain_zz)
+/** Looks at the stress zz of a point and, where it is not nothing, goes on to another strain zz. */
+static Look take_step(const Material *m, const breccia_batch *batch, int i, bool last, Search *s, double *strain_zz)
 {
-  static const double far = 10, out_of_sight = 1e6; /* times what the point is strained as it begins */
   const bool is_free = is_free_of_zz(m, batch, i, SHARP);
-  if (is_free && fabs(strain_zz[i]) <= far * strained) return IS_FREE;
+  const double stress = batch->stress[ZZ][i];
+  if (is_free && fabs(strain_zz[i]) <= s->most) return IS_FREE;
   if (!is_free && !last) {
-    strain_zz[i] -= batch->stress[ZZ][i] / (slope > 0 ? slope : elastic_zz(m));
-    if (fabs(strain_zz[i]) <= out_of_sight * strained) return GOES_ON;
+    s->sides[stress > 0] = strain_zz[i];
+    s->found[stress > 0] = true;
+    const double next = next_zz(m, batch, i, s);
+    s->zz = strain_zz[i];
+    s->before = fabs(s->stress);
+    s->stress = stress;
+    strain_zz[i] = next;
+    if (fabs(next) <= OUT_OF_SIGHT / FAR * s->most) return GOES_ON;
   }
-  const bool found = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], SHARP, strain_zz)) ||
-                     bisect_zz(m, batch, i, begin, CLOSE, strain_zz);
+  const bool found = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], s->most, SHARP, strain_zz)) ||
+                     bisect_zz(m, batch, i, s->begin, s->most, CLOSE, strain_zz);
   return found ? SETTLED : FAILED;
 }
 
+/** Strains zz of a whole batch as its searches began: another try begins there. @return the point that fails */
+static int fail(const Search *searches, int count, int point, double *strain_zz)
+{
+  for (int i = 0; i < count; ++i) strain_zz[i] = searches[i].begin;
+  return point;
+}
+
 /** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
- *  not end: at corners, in softening, and with tangents that are not those of whole steps; and for those where it ran away, as next to no
- *  stress divided by next to no stiffness leads out of numbers. Where nobody wants tangents the law makes them once only, as they take it as long again
- *  as stresses: then the slope is that between the last two strains. */
+ *  not end: at corners, in softening, and with tangents that are not those of whole steps; and for those where it ran away. Where nobody wants tangents
+ *  the law makes them once only, as they take it as long again as stresses. */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
   enum { MOST_ITERATIONS = 20 };
   const bool may_pack = !m->remote && m->history_values <= PACKED_VALUES;
-  double local[BATCH * 36], begin[BATCH], strained[BATCH], last_zz[BATCH],
-      last_stress[BATCH], *const tangent = batch->tangent;
-  bool settled[BATCH] = {false}, is_packed = false;
+  double local[BATCH * 36], *const tangent = batch->tangent;
+  Search searches[BATCH];
+  bool is_packed = false;
   Packed packed;
-  memcpy(begin, strain_zz, sizeof *begin * (size_t)batch->count);
   breccia_batch now = *batch; /* the whole one, or what is left of it */
   double *zz = strain_zz;
   now.tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
     const int bad = m->law->update(m->constants, &now);
     int left[BATCH], count = 0;
-    if (bad >= 0) return is_packed ? packed.of[bad] : bad;
+    if (bad >= 0 && iteration == 0) return bad;
+    if (bad >= 0) return fail(searches, batch->count, is_packed ? packed.of[bad] : bad, strain_zz);
+    for (int i = 0; i < now.count && iteration == 0; ++i) searches[i] = begin_search(m, &now, i);
     for (int i = 0; i < now.count; ++i) {
       const int of = is_packed ? packed.of[i] : i;
-      if (settled[of]) continue;
-      if (iteration == 0) strained[i] = strained_by(m, &now, i);
-      const double stress = now.stress[ZZ][i], apart = now.tangent || zz[i] == last_zz[of] ? 0 : zz[i] - last_zz[of];
-      const double slope = now.tangent  ? now.tangent[36 * i + 7 * ZZ]
-                           : apart != 0 ? (stress - last_stress[of]) / apart
-                                        : 0;
-      last_zz[of] = zz[i];
-      last_stress[of] = stress;
-      const Look look = take_step(m, &now, i, iteration == MOST_ITERATIONS, slope, begin[of], strained[of], zz);
-      if (look == FAILED) return of;
-      settled[of] = look == SETTLED;
+      if (searches[of].settled) continue;
+      const Look look = take_step(m, &now, i, iteration == MOST_ITERATIONS, &searches[of], zz);
+      if (look == FAILED) return fail(searches, batch->count, of, strain_zz);
+      searches[of].settled = look == SETTLED;
       if (look == GOES_ON)
         left[count++] = i;
       else if (is_packed)
         give_back(&packed, m, i, batch, strain_zz);
     }
     if (!count) break;
-    now.tangent = tangent;
-    if (is_packed || (may_pack && 2 * count <= now.count)) {
-      pack(&packed, m, &now, is_packed, left, count);
-      now = packed_batch(&packed, batch);
-      zz = packed.strain[ZZ];
-      is_packed = true;
-    }
+    if (!may_pack) continue;
+    if (!is_packed) now.tangent = tangent;
+    if (count == now.count) continue;
+    pack(&packed, m, &now, is_packed, left, count);
+    now = packed_batch(&packed, batch);
+    zz = packed.strain[ZZ];
+    is_packed = true;
   }
   for (int i = 0; tangent && i < batch->count; ++i) {
     double *d = tangent + 36 * i;
