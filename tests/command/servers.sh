@@ -121,6 +121,7 @@ relay() { # FAULT
 }
 relayed() { deck "$served, server: ['unix:$PWD/relay'], timeout: $1"; }
 fault() { # FAULT WORDS STEPS: those that are left for the restart; 32 after the last committed step, 40 after the last checkpoint
+  left_out 3 && return # random answers meet the client under the sanitizers in make fuzz
   relay "$1"
   relayed ${4:-300} > faulty.yaml
   "$breccia" run faulty.yaml > out 2> err
