@@ -16,6 +16,7 @@ loads:
   - {on: {face: x+, layers: 3}, body force: [900, 0, 0], history: {ramp to: 1e-4}}
 solve: {explicit: {time step: 8e-6, steps: 60}}
 results: {number: 3, precision: double, checkpoint steps: 20}
+pictures: []
 END
 }
 clay='shear modulus: 60000, bulk modulus: 100000, octahedral strength: 30'

@@ -140,8 +140,11 @@ static void usual_units_are_those_of_the_database(void **state)
   const struct {
     const char *dimension, *words;
     double value;
-  } cases[] = {{"length", "3 furlong", 603.50520675}, {"stress", "3 MPa", 3000},           {"angle", "0.5 turn", 180},
-               {"angle", "90 deg", 90},               {"density", "3000 carat/m3", 6e-4}};
+  } cases[] = {{"length", "3 furlong", 603.50520675},
+               {"stress", "3 MPa", 3000},
+               {"angle", "0.5 turn", 180},
+               {"angle", "90 deg", 90},
+               {"density", "3000 carat/m3", 6e-4}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     if (units_read(usual, dimension_find(cases[k].dimension), cases[k].words, &value, &reason))
       fail_msg("%s: %s", cases[k].words, text_words(&reason));

@@ -276,7 +276,7 @@ LANES_INLINE void find_tangents(const DamagePlasticity *c, const Search *s, Soli
 /* Begun, searched and varied are groups by functions of their own, one for each curve of tension: with all of it in one function for each kind of call gcc
  * takes four times as long. */
 LANES_OUTLINE void begin_searches(const DamagePlasticity *c, const SolidLanes *p, int groups, Search *searches,
-                                bool tangents)
+                                  bool tangents)
 {
   for (int g = 0; g < groups; ++g) begin_search(c, &p[g], &searches[g], tangents);
 }
