@@ -5,14 +5,11 @@
 #include "base/memory.h"
 #include "deck/units.h"
 #include <ctype.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 static const Dimension dimensions[] = {
     {"1", 0, 0, 0, ""},
@@ -50,21 +47,44 @@ const Dimension *dimension_find(const char *name)
   return NULL;
 }
 
-struct Units {
-  ut_system *system;
+/** A system of units, and what decks are reckoned in as units of it. */
+typedef struct UnitSet {
+  ut_system *system; /* or NULL */
   ut_unit *base[3], *degree;
+} UnitSet;
+
+enum { USUAL, WHOLE, SETS };
+
+struct Units {
+  UnitSet *sets;  /* [SETS]; the whole system is read when a word asks for it */
   double size[3]; /* of the base units, in m, N, s */
   char name[3][32];
 };
 
-/* Names that civil engineers use and the library lacks. */
-static const struct {
-  const char *name, *meaning;
-} additions[] = {
-    {"kip", "1000 lbf"},     {"ksi", "1000 lbf/in2"}, {"pcf", "lb/ft3"},       {"psf", "lbf/ft2"},
-    {"plf", "lbf/ft"},       {"klf", "1000 lbf/ft"},  {"ksf", "1000 lbf/ft2"}, {"tonf", "2000 lbf"},
-    {"microstrain", "1e-6"}, {"deg", "arc_degree"},   {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
-};
+static void close_set(UnitSet *set)
+{
+  for (int k = 0; k < 3; ++k) ut_free(set->base[k]);
+  ut_free(set->degree);
+  ut_free_system(set->system);
+  *set = (UnitSet){0};
+}
+
+/** @param[in] system  or NULL. @return whether it knows all base units */
+static bool open_set(UnitSet *set, ut_system *system, const char *const names[3])
+{
+  *set = (UnitSet){.system = system};
+  if (!system) return false;
+  bool all = true;
+  set->degree = ut_parse(system, "deg", UT_ASCII);
+  for (int k = 0; k < 3; ++k) all &= (set->base[k] = ut_parse(system, names[k], UT_UTF8)) != NULL;
+  return all;
+}
+
+/** The system to which a unit belongs. */
+static const UnitSet *set_of(const Units *units, const ut_unit *unit)
+{
+  return &units->sets[ut_get_system(unit) == units->sets[USUAL].system ? USUAL : WHOLE];
+}
 
 /** Whether a word begins here with which the library moves the zero of a unit: "m from 2". */
 static bool shifts(const char *words, const char *at)
@@ -75,6 +95,23 @@ static bool shifts(const char *words, const char *at)
         isspace((unsigned char)at[strlen(known[k])]))
       return true;
   return false;
+}
+
+/** @return NULL after saying why there is none */
+static ut_unit *find_unit(const Units *units, const char *words, Text *reason)
+{
+  UnitSet *usual = &units->sets[USUAL], *whole = &units->sets[WHOLE];
+  ut_unit *unit = usual->system ? ut_parse(usual->system, words, UT_UTF8) : NULL;
+  if (unit) return unit;
+  if (!whole->system) {
+    const char *const names[3] = {units->name[0], units->name[1], units->name[2]};
+    ut_system *system = unit_system_whole(reason);
+    if (!system) return NULL;
+    open_set(whole, system, names);
+  }
+  unit = ut_parse(whole->system, words, UT_UTF8);
+  if (!unit) text_add(reason, "unit '%s' is not known", words);
+  return unit;
 }
 
 ut_unit *units_parse(const Units *units, const char *words, Text *reason)
@@ -111,9 +148,7 @@ ut_unit *units_parse(const Units *units, const char *words, Text *reason)
       return NULL;
     }
   }
-  ut_unit *unit = ut_parse(units->system, words, UT_UTF8);
-  if (!unit) text_add(reason, "unit '%s' is not known", words);
-  return unit;
+  return find_unit(units, words, reason);
 }
 
 bool units_count_cycles(const char *unit)
@@ -133,13 +168,15 @@ static bool alike(const ut_unit *a, const ut_unit *b)
   return yes;
 }
 
-static ut_unit *unit_of(const Units *units, const Dimension *dimension)
+/** The deck's own unit of a dimension, in the system of another unit. */
+static ut_unit *unit_of(const Units *units, const Dimension *dimension, const ut_unit *beside)
 {
-  if (!strcmp(dimension->name, "angle")) return ut_clone(units->degree);
+  const UnitSet *set = set_of(units, beside);
+  if (!strcmp(dimension->name, "angle")) return ut_clone(set->degree);
   const int power[3] = {dimension->length, dimension->force, dimension->time};
-  ut_unit *product = ut_get_dimensionless_unit_one(units->system);
+  ut_unit *product = ut_get_dimensionless_unit_one(set->system);
   for (int k = 0; k < 3 && product; ++k) {
-    ut_unit *factor = ut_raise(units->base[k], power[k]);
+    ut_unit *factor = ut_raise(set->base[k], power[k]);
     ut_unit *next = factor ? ut_multiply(product, factor) : NULL;
     ut_free(factor);
     ut_free(product);
@@ -148,63 +185,51 @@ static ut_unit *unit_of(const Units *units, const Dimension *dimension)
   return product;
 }
 
-/** @return why no files can be opened at this moment, whichever they are: as many as UDUNITS-2 reads at once; 0 if they can */
-static int why_unopened(void)
-{
-  enum { AT_ONCE = 2 };
-  int files[AT_ONCE], number = 0;
-  for (int k = 0; k < AT_ONCE; ++k)
-    if ((files[k] = open("/", O_RDONLY | O_CLOEXEC)) < 0) number = errno;
-  for (int k = 0; k < AT_ONCE; ++k)
-    if (files[k] >= 0) close(files[k]);
-  return number;
-}
-
 Units *units_create(const char *length, const char *force, const char *time, Error *error)
 {
   Units *units = memory_plain(1, sizeof *units);
-  if (!units) {
+  if (units) units->sets = memory_plain(SETS, sizeof *units->sets);
+  if (!units || !units->sets) {
     error_add(error, BRECCIA_FAILURE, "out of memory: units");
+    free(units);
     return NULL;
+  }
+  const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
+  bool usual = true; /* names that are not kept as a whole could not be read again in the whole system */
+  for (int k = 0; k < 3; ++k) {
+    usual &= strlen(names[k]) < sizeof units->name[k];
+    strncpy(units->name[k], names[k], sizeof units->name[k] - 1);
   }
   ut_set_error_message_handler(ut_ignore);
-  units->system = ut_read_xml(NULL);
-  if (!units->system) {
-    const int number = why_unopened();
-    const bool full = number == EMFILE || number == ENFILE;
-    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 %s%s%s",
-              number ? "cannot be read: " : "was not found: install libudunits2-data", number ? strerror(number) : "",
-              full ? "; close some, or allow more (ulimit -n)" : "");
-    units_destroy(&units);
-    return NULL;
-  }
-  for (size_t k = 0; k < sizeof additions / sizeof *additions; ++k) {
-    ut_unit *known = ut_get_unit_by_name(units->system, additions[k].name);
-    if (!known) {
-      ut_unit *unit = ut_parse(units->system, additions[k].meaning, UT_ASCII);
-      if (unit) ut_map_name_to_unit(additions[k].name, UT_ASCII, unit);
-      ut_free(unit);
+  const UnitSet *set = &units->sets[USUAL];
+  if (!usual || !open_set(&units->sets[USUAL], unit_system_usual(), names)) {
+    Text reason = {0};
+    close_set(&units->sets[USUAL]);
+    set = &units->sets[WHOLE];
+    open_set(&units->sets[WHOLE], unit_system_whole(&reason), names);
+    if (!set->system) {
+      error_add(error, BRECCIA_FAILURE, "%s", text_words(&reason));
+      text_free(&reason);
+      units_destroy(&units);
+      return NULL;
     }
-    ut_free(known);
   }
-  units->degree = ut_parse(units->system, "arc_degree", UT_ASCII);
-  const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
   static const char *const examples[3] = {"m, mm or ft", "N, kN or lbf", "s or ms"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
-    units->base[k] = units_parse(units, names[k], &reason);
-    ut_unit *standard = ut_parse(units->system, wanted[k], UT_ASCII);
-    if (!units->base[k])
+    ut_unit *given = units_parse(units, names[k], &reason), *standard = ut_parse(set->system, wanted[k], UT_ASCII);
+    if (!given)
       text_add(&reason, "; expected a unit of %s, like %s", what[k], examples[k]);
-    else if (!ut_are_convertible(units->base[k], standard))
+    else if (!ut_are_convertible(given, standard))
       text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
     else {
-      cv_converter *converter = ut_get_converter(units->base[k], standard);
+      cv_converter *converter = ut_get_converter(given, standard);
       units->size[k] = converter ? cv_convert_double(converter, 1) : NAN;
       if (converter && !(units->size[k] > 0))
         text_add(&reason, "unit '%s' is none to count %s in: it must be greater than 0", names[k], what[k]);
       cv_free(converter);
     }
+    ut_free(given);
     ut_free(standard);
     if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", text_words(&reason));
     int failed = reason.length > 0;
@@ -213,7 +238,6 @@ Units *units_create(const char *length, const char *force, const char *time, Err
       units_destroy(&units);
       return NULL;
     }
-    strncpy(units->name[k], names[k], sizeof units->name[k] - 1);
   }
   return units;
 }
@@ -221,9 +245,8 @@ Units *units_create(const char *length, const char *force, const char *time, Err
 void units_destroy(Units **units)
 {
   if (!units || !*units) return;
-  for (int k = 0; k < 3; ++k) ut_free((*units)->base[k]);
-  ut_free((*units)->degree);
-  ut_free_system((*units)->system);
+  for (int n = 0; n < SETS; ++n) close_set(&(*units)->sets[n]);
+  free((*units)->sets);
   free(*units);
   *units = NULL;
 }
@@ -317,8 +340,10 @@ static bool explain_number(const char *words, const char *rest, Text *reason)
 
 static bool convertible(const Units *units, const char *words, const Dimension *dimension)
 {
-  ut_unit *unit = ut_parse(units->system, words, UT_UTF8), *target = unit ? unit_of(units, dimension) : NULL;
+  Text why = {0};
+  ut_unit *unit = find_unit(units, words, &why), *target = unit ? unit_of(units, dimension, unit) : NULL;
   const bool yes = target && alike(unit, target);
+  text_free(&why);
   ut_free(unit);
   ut_free(target);
   return yes;
@@ -362,15 +387,19 @@ static bool explain_weight(const Units *units, const Dimension *dimension, const
 {
   if (strcmp(dimension->name, "density") || !convertible(units, given, dimension_find("force per volume")))
     return false;
-  ut_unit *unit = ut_parse(units->system, given, UT_UTF8), *target = ut_parse(units->system, "N/m3", UT_ASCII);
+  Text why = {0};
+  ut_unit *unit = find_unit(units, given, &why),
+          *target = unit ? ut_parse(ut_get_system(unit), "N/m3", UT_ASCII) : NULL;
   cv_converter *converter = unit && target ? ut_get_converter(unit, target) : NULL;
   if (converter)
     text_add(reason, "'%s' is a weight per volume; the density is its mass, %.5g kg/m3", words,
              cv_convert_double(converter, number) / 9.80665);
+  const bool explained = converter != NULL;
   cv_free(converter);
   ut_free(unit);
   ut_free(target);
-  return converter != NULL;
+  text_free(&why);
+  return explained;
 }
 
 int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
@@ -410,7 +439,7 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     return 1;
   }
   Text why = {0}, meant = {0};
-  ut_unit *given = units_parse(units, end, &why), *target = given ? unit_of(units, dimension) : NULL;
+  ut_unit *given = units_parse(units, end, &why), *target = given ? unit_of(units, dimension, given) : NULL;
   const bool fits = target && alike(given, target);
   if (fits) {
     cv_converter *converter = ut_get_converter(given, target);

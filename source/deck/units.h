@@ -5,7 +5,15 @@
 #include "deck/quantity.h"
 #include <udunits2.h>
 
-/** A unit from words, strictly. To be freed with ut_free; NULL after saying why it is none. */
+/** The units that most decks use. @return to be freed with ut_free_system; NULL without memory */
+ut_system *unit_system_usual(void);
+/** The words that it knows. @return NULL behind the last one */
+const char *unit_usual(size_t k);
+
+/** All units of the library's database, and ours. @return the same; NULL after saying why there are none */
+ut_system *unit_system_whole(Text *reason);
+
+/** A unit from words, strictly: of the usual system, if that knows it, else of the whole one. To be freed with ut_free; NULL after saying why it is none. */
 ut_unit *units_parse(const Units *units, const char *words, Text *reason);
 
 /** True if a unit counts cycles, like Hz: a rate of 1/s is something else, though their dimensions are the same. */

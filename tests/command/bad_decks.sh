@@ -261,6 +261,7 @@ refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness
 
 # warns EDIT PLACE WORDS: the good deck after an edit is read, with a warning at line:column
 warns() {
+  left_out 5 && return
   sed "$1" "$work/good.yaml" > "$work/deck.yaml"
   cmp -s "$work/good.yaml" "$work/deck.yaml" && fail "the edit $1 changes nothing"
   (cd "$work" && "$breccia" check deck.yaml > out 2> errors)

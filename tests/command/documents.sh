@@ -51,6 +51,7 @@ fi
 
 # Each example is in the command, as its folder has it, and is taken with nothing around it but what `new` writes.
 mkdir "$work/examples"
+listed=$("$breccia" new --example)
 for deck in "$source"/examples/*/*.yaml; do
   [ $((number++ % every)) = 0 ] || continue
   name=${deck#"$source/examples/"} name=${name%.yaml}
@@ -58,7 +59,7 @@ for deck in "$source"/examples/*/*.yaml; do
   mkdir -p "$folder"
   "$breccia" new --example "$name" "$deck" > "$work/out" 2>&1 || { fail "new --example $name: $(cat "$work/out")"; continue; }
   cmp -s "$deck" "$source/examples/$name.yaml" || fail "new --example $name writes another deck than examples/$name.yaml"
-  contains "list of examples" "$("$breccia" new --example)" "  $name "
+  contains "list of examples" "$listed" "  $name "
   if ! grep -q '^body:' "$deck"; then
     "$breccia" material "$deck" > "$work/out" 2>&1 || fail "$name is refused: $(tail -3 "$work/out")"
     continue

@@ -1,7 +1,7 @@
 # A run that was killed at random moments and taken up again ends in the same bits as one never stopped.
 . "$(dirname "$0")/common.sh"
 cd "$work"
-rows=22 to=0.85
+rows=10 to=0.35
 [ -n "${BRECCIA_SANITIZED:-}" ] && rows=7 to=0.25
 cat > plate.yaml <<Y
 title: Restart

@@ -16,6 +16,7 @@ loads:
   - {on: {face: x+, layers: 3}, body force: [900, 0, 0], history: {ramp to: 1e-4}}
 solve: {explicit: {time step: 8e-6, steps: 60}}
 results: {number: 3, precision: double, checkpoint steps: 20}
+pictures: []
 END
 }
 clay='shear modulus: 60000, bulk modulus: 100000, octahedral strength: 30'
@@ -121,6 +122,7 @@ relay() { # FAULT
 }
 relayed() { deck "$served, server: ['unix:$PWD/relay'], timeout: $1"; }
 fault() { # FAULT WORDS STEPS: those that are left for the restart; 32 after the last committed step, 40 after the last checkpoint
+  left_out 3 && return # random answers meet the client under the sanitizers in make fuzz
   relay "$1"
   relayed ${4:-300} > faulty.yaml
   "$breccia" run faulty.yaml > out 2> err

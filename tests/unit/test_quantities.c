@@ -2,6 +2,7 @@
 #include "deck/interval.h"
 #include "deck/measure.h"
 #include "deck/quantity.h"
+#include "deck/units.h"
 #include "support.h"
 
 /** Reads a quantity of a deck in some units. @return 0, or 1 with words of what is wrong */
@@ -101,6 +102,55 @@ static void units_of_civil_engineers_have_their_sizes(void **state)
     if (read_in(names, cases[k].dimension, words, &value, &reason)) fail_msg("%s: %s", words, text_words(&reason));
     if (!(fabs(value / cases[k].size - 2) < 1e-9)) fail_msg("%s is %.10g", words, value);
   }
+}
+
+/** What most decks need is there without the library's database, and the same to the last bit. */
+static void usual_units_are_those_of_the_database(void **state)
+{
+  (void)state;
+  Units *usual = units_create("m", "kN", "s", NULL), *whole = units_create("furlong", "kN", "s", NULL);
+  size_t count = 0;
+  for (const char *words; (words = unit_usual(count)); ++count) {
+    Measure ours, theirs;
+    Text reason = {0};
+    if (measure_unit(usual, words, &ours, &reason) || measure_unit(whole, words, &theirs, &reason))
+      fail_msg("%s", text_words(&reason));
+    if (!measure_alike(&ours, &theirs) || ours.value != theirs.value)
+      fail_msg("%s is %.17g, of the database %.17g", words, ours.value, theirs.value);
+  }
+  assert_true(count > 30);
+  units_destroy(&whole);
+  /* Where there is no database only what is unusual is missed. */
+  assert_int_equal(setenv("UDUNITS2_XML_PATH", "/nowhere.xml", 1), 0);
+  Error *error = breccia_error_create();
+  double value;
+  Text reason = {0};
+  assert_int_equal(units_read(usual, dimension_find("stress"), "3 kip/in2", &value, &reason), 0);
+  assert_int_equal(units_read(usual, dimension_find("length"), "3 furlong", &value, &reason), 1);
+  assert_string_equal(text_words(&reason),
+                      "the unit database of UDUNITS-2 was not found: install libudunits2-data; expected a length, like "
+                      "'1.5 m' or 1.5 (plain numbers are in m)");
+  text_free(&reason);
+  assert_null(units_create("furlong", "kN", "s", error));
+  assert_string_equal(breccia_error_text(error),
+                      "the unit database of UDUNITS-2 was not found: install libudunits2-data");
+  breccia_error_destroy(&error);
+  /* Once it is there, what was begun without it goes on with it. */
+  assert_int_equal(unsetenv("UDUNITS2_XML_PATH"), 0);
+  const struct {
+    const char *dimension, *words;
+    double value;
+  } cases[] = {{"length", "3 furlong", 603.50520675},
+               {"stress", "3 MPa", 3000},
+               {"angle", "0.5 turn", 180},
+               {"angle", "90 deg", 90},
+               {"density", "3000 carat/m3", 6e-4}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    if (units_read(usual, dimension_find(cases[k].dimension), cases[k].words, &value, &reason))
+      fail_msg("%s: %s", cases[k].words, text_words(&reason));
+    assert_near(value, cases[k].value, 1e-5 * cases[k].value);
+  }
+  units_destroy(&usual);
 }
 
 static void units_are_called_as_engineers_call_them(void **state)
@@ -345,6 +395,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_dimension_is_the_same_in_any_units),
       cmocka_unit_test(units_of_civil_engineers_have_their_sizes),
+      cmocka_unit_test(usual_units_are_those_of_the_database),
       cmocka_unit_test(units_are_called_as_engineers_call_them),
       cmocka_unit_test(numbers_have_the_prefix_of_their_size),
       cmocka_unit_test(what_is_wrong_with_a_quantity_is_said),

@@ -226,10 +226,10 @@ LANES_INLINE void search_all(const DamagePlasticity *c, bool tail, const SolidLa
     }
 }
 
-LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidLanes *p, bool tail, bool tangents)
+LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidLanes *p, bool tail)
 {
-  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  const DualSlopes none = {0, 0}, every = {0, LEFT + 1};
+  const double twice = 2 * c->elastic.shear;
+  const DualSlopes none = {0, 0};
   Lanes elastic[6], effective[6], plastic[6];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[k];
   elastic_stress_lanes(&c->elastic, elastic, effective);
@@ -244,14 +244,19 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
   p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
   p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
-  Dual whole = wholeness(none, c, tail, dual_constant(s->found[FOUND_TENSION]),
-                         dual_constant(s->found[FOUND_COMPRESSION]), dual_constant(s->found[FOUND_SHARE]));
+  const Dual whole = wholeness(none, c, tail, dual_constant(s->found[FOUND_TENSION]),
+                               dual_constant(s->found[FOUND_COMPRESSION]), dual_constant(s->found[FOUND_SHARE]));
   p->trial[PLASTIC_DAMAGE] = lanes_set(1) - whole.value;
   for (int k = 0; k < 6; ++k) p->stress[k] = lanes_product(whole.value, effective[k]) + (left - left);
-  if (!tangents) return;
+}
+
+LANES_INLINE void find_tangents(const DamagePlasticity *c, const Search *s, SolidLanes *p, bool tail)
+{
+  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
+  const DualSlopes every = {0, LEFT + 1};
   const Trial varied = trial_of(every, s->principal);
-  const Flow flow = flow_by(every, c, tail, &varied, left, p->committed);
-  whole = wholeness(every, c, tail, flow.tension, flow.compression, flow.share);
+  const Flow flow = flow_by(every, c, tail, &varied, s->left, p->committed);
+  const Dual whole = wholeness(every, c, tail, flow.tension, flow.compression, flow.share);
   const Spectrum strain = spectrum_with_vectors(&s->apart);
   Lanes value[3], slopes[9], tangent[36];
   const Lanes by_flow =
@@ -268,22 +273,54 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   store_tangents(tangent, p->tangent);
 }
 
-LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, int groups, bool tail, bool tangents)
+/* Begun, searched and varied are groups by functions of their own, one for each curve of tension: with all of it in one function for each kind of call gcc
+ * takes four times as long. */
+LANES_OUTLINE void begin_searches(const DamagePlasticity *c, const SolidLanes *p, int groups, Search *searches,
+                                  bool tangents)
 {
-  Search searches[SOLID_GROUPS];
   for (int g = 0; g < groups; ++g) begin_search(c, &p[g], &searches[g], tangents);
-  search_all(c, tail, p, groups, searches);
-  for (int g = 0; g < groups; ++g) finish_step(c, &searches[g], &p[g], tail, tangents);
+}
+
+LANES_OUTLINE void search_without_tail(const DamagePlasticity *c, const SolidLanes *p, int groups, Search *searches)
+{
+  search_all(c, false, p, groups, searches);
+}
+
+LANES_OUTLINE void search_with_tail(const DamagePlasticity *c, const SolidLanes *p, int groups, Search *searches)
+{
+  search_all(c, true, p, groups, searches);
+}
+
+LANES_OUTLINE void tangents_without_tail(const DamagePlasticity *c, const Search *s, SolidLanes *p)
+{
+  find_tangents(c, s, p, false);
+}
+
+LANES_OUTLINE void tangents_with_tail(const DamagePlasticity *c, const Search *s, SolidLanes *p)
+{
+  find_tangents(c, s, p, true);
 }
 
 LANES_INLINE void steps(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
-  step_along(constants, p, groups, false, tangents);
+  Search searches[SOLID_GROUPS];
+  begin_searches(constants, p, groups, searches, tangents);
+  search_without_tail(constants, p, groups, searches);
+  for (int g = 0; g < groups; ++g) {
+    finish_step(constants, &searches[g], &p[g], false);
+    if (tangents) tangents_without_tail(constants, &searches[g], &p[g]);
+  }
 }
 
 LANES_INLINE void steps_with_tail(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
-  step_along(constants, p, groups, true, tangents);
+  Search searches[SOLID_GROUPS];
+  begin_searches(constants, p, groups, searches, tangents);
+  search_with_tail(constants, p, groups, searches);
+  for (int g = 0; g < groups; ++g) {
+    finish_step(constants, &searches[g], &p[g], true);
+    if (tangents) tangents_with_tail(constants, &searches[g], &p[g]);
+  }
 }
 
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes *history, LaneMask *found)

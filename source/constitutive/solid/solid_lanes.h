@@ -7,6 +7,9 @@
 #include "base/lanes.h"
 #include "constitutive/solid/solid_law.h"
 
+/* Long parts of a step that one call does for many points: within each of their callers they take long to compile. */
+#define LANES_OUTLINE static __attribute__((noinline))
+
 enum { MOST_HISTORY = 13, SOLID_CHUNK = 128, SOLID_GROUPS = 4 };
 
 /** `update` of a law that is compiled for each kind of vectors, and how it is chosen: LANES_CHOICE(SolidUpdate, name). */
