@@ -40,12 +40,16 @@ LANES_INLINE __m512d lanes_pair(const double *low, const double *high)
   return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
 }
 
-LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[QUAD])
+/** What lanes_gather_rows does, in two parts: rows are loaded, and turned round. */
+LANES_INLINE void lanes_load_rows(const double *from, int stride, const int32_t *index, Lanes rows[QUAD])
 {
-  const __m512d a = lanes_pair(from + (int64_t)index[0] * stride, from + (int64_t)index[4] * stride),
-                b = lanes_pair(from + (int64_t)index[1] * stride, from + (int64_t)index[5] * stride),
-                c = lanes_pair(from + (int64_t)index[2] * stride, from + (int64_t)index[6] * stride),
-                d = lanes_pair(from + (int64_t)index[3] * stride, from + (int64_t)index[7] * stride);
+  for (int k = 0; k < QUAD; ++k)
+    rows[k] = (Lanes)lanes_pair(from + (int64_t)index[k] * stride, from + (int64_t)index[QUAD + k] * stride);
+}
+
+LANES_INLINE void lanes_turn_rows(const Lanes rows[QUAD], Lanes out[QUAD])
+{
+  const __m512d a = (__m512d)rows[0], b = (__m512d)rows[1], c = (__m512d)rows[2], d = (__m512d)rows[3];
   const __m512d even_ab = _mm512_unpacklo_pd(a, b), odd_ab = _mm512_unpackhi_pd(a, b),
                 even_cd = _mm512_unpacklo_pd(c, d), odd_cd = _mm512_unpackhi_pd(c, d);
   const __m512i low = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0), high = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
@@ -53,6 +57,13 @@ LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_
   out[1] = (Lanes)_mm512_permutex2var_pd(odd_ab, low, odd_cd);
   out[2] = (Lanes)_mm512_permutex2var_pd(even_ab, high, even_cd);
   out[3] = (Lanes)_mm512_permutex2var_pd(odd_ab, high, odd_cd);
+}
+
+LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[QUAD])
+{
+  Lanes rows[QUAD];
+  lanes_load_rows(from, stride, index, rows);
+  lanes_turn_rows(rows, out);
 }
 
 /** Four rows of two side by side. */

@@ -53,6 +53,7 @@ static void destroy(void *formulation)
   free(b->rows);
   places_free(&b->numbers);
   places_free(&b->shown);
+  free(b->by_length);
   free(b->range);
   free(b->surface);
   free(b->gaps);
@@ -125,7 +126,8 @@ static void *create(const FormulationParts *parts, Error *error)
     destroy(b);
     return NULL;
   }
-  if ((f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) ||
+  if ((f->stored_slots && !b->bonds && !(b->by_length = stretch_lengths(f, error))) ||
+      (f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) ||
       (b->bonds && !(b->pull = places_array(b->bonds->count, "pulls of bonds", error)))) {
     destroy(b);
     return NULL;
@@ -240,7 +242,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
       shown[4 + k] = p->displacement[k][place];
     }
     shown[3] = p->volume[place];
-    shown[7] = constant[p->block[place / SLICE]];
+    shown[7] = constant[p->block[place / SLICE]] / 2;
   }
   return -1;
 }
@@ -273,7 +275,8 @@ static size_t bytes(const void *formulation)
   const BondBased *b = formulation;
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
          (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
-         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
+         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) +
+         (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
 }
 
 const FormulationType formulation_bond_based = {

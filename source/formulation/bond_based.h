@@ -49,11 +49,12 @@ struct BondBased {
   SpringRow *rows;         /* [patterns] */
   double *numbers;         /* of these rows */
   double *shown;           /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  float *by_length;        /* of linear bonds in stored slots (stretch_lengths); NULL if there are none */
   float *surface;          /* [slots][8] surface correction; NULL: none */
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
+  uint8_t *gaps;           /* [slices] 1: bonds are missing (stretch_has_gaps) */
   BondResist *resist_springs;
   const BondPointSweeps *point_sweeps;
 };
@@ -79,14 +80,8 @@ LANES_INLINE Lanes bond_surface(const BondBased *b, int64_t slot, int half)
 /** Makes the tables of linear bonds. */
 int bond_springs_create(BondBased *b, Error *error);
 
-/* The last of the numbers that stored slots read of a neighbour is its c (or c / E where bonds have points). */
+/* The last of the numbers that stored slots read of a neighbour is half of its c (of its c / E where bonds have points): a bond has the sum of both. */
 enum { BOND_SHOWN = STRETCH_SHOWN };
-
-/** Mean of both ends' constants, of half a stored slot. */
-LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const StretchEnds *ends)
-{
-  return lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * slice * SLICE + 7]) + ends->last);
-}
 
 /** Of bonds with points: stretches of a batch of rows, their pulls from stresses (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);

@@ -85,20 +85,17 @@ LANES_INLINE Lanes stretch_stored(const StretchHere *here, const Lanes x[QUAD], 
 /** Bonds of a stored slot that have rows.
  *  @param[in] owned  their bits */
 LANES_INLINE void stretch_slot(const BondBased *b, const Chunk *chunk, const StretchHere here[HALVES], int64_t slot,
-                               unsigned owned, int at, bool series, LanesWithin *within)
+                               unsigned owned, int at, bool series, StretchWalk walk[HALVES], LanesWithin *within)
 {
   const Family *f = b->family;
   for (int half = 0; half < HALVES; ++half) {
-    const int64_t place = (int64_t)f->base[slot] * SLICE + LANES * half;
-    Lanes x[QUAD], u[QUAD];
-    family_fetch_ahead(f, place, b->shown, BOND_SHOWN);
-    lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + place, x);
-    lanes_gather_rows(b->shown + QUAD, BOND_SHOWN, f->neighbour + place, u);
-    Lanes lever = lanes_set(0.5) * (lanes_set(chunk->per_stress) + u[3]);
+    const int64_t place = walk[half].at;
+    const StretchShown there = stretch_next(&walk[half]);
+    Lanes lever = lanes_set(0.5 * chunk->per_stress) + there.u[3];
     if (f->scale) lever *= lanes_load(f->scale + place);
     if (b->surface) lever *= bond_surface(b, slot, half);
     lever = lanes_intact(f->intact[slot], half, lever);
-    const Lanes strain = stretch_stored(&here[half], x, u, owned, half, &lever, series, within);
+    const Lanes strain = stretch_stored(&here[half], there.x, there.u, owned, half, &lever, series, within);
     lanes_store_some(chunk->strain + at, owned, half, strain);
     lanes_store_some(chunk->lever + at, owned, half, lever);
     at += __builtin_popcount(owned >> (LANES * half) & ((1u << LANES) - 1));
@@ -111,13 +108,18 @@ LANES_INLINE void stretch_slots(const BondBased *b, const Chunk *chunk, int32_t 
                                 LanesWithin *within)
 {
   const Family *f = b->family;
+  const int64_t first = f->first[chunk->slice] + code / SLICE;
   StretchHere here[HALVES];
-  for (int half = 0; half < HALVES; ++half) here[half] = stretch_here(b->particles, chunk->slice, half);
+  StretchWalk walk[HALVES];
+  for (int half = 0; half < HALVES; ++half) {
+    here[half] = stretch_here(b->particles, chunk->slice, half);
+    walk[half] = stretch_walk(f, b->shown, first, f->first[chunk->slice + 1], half);
+  }
   unsigned rest = (unsigned)UINT8_MAX << (code % SLICE); /* a chunk may begin and end within a slot */
-  for (int64_t slot = f->first[chunk->slice] + code / SLICE; at < chunk->count; ++slot, rest = UINT8_MAX) {
+  for (int64_t slot = first; at < chunk->count; ++slot, rest = UINT8_MAX) {
     unsigned owned = b->bonds->keeps[f->base[slot]] & rest;
     while (__builtin_popcount(owned) > chunk->count - at) owned &= ~(1u << (31 - __builtin_clz(owned)));
-    stretch_slot(b, chunk, here, slot, owned, at, series, within);
+    stretch_slot(b, chunk, here, slot, owned, at, series, walk, within);
     at += __builtin_popcount(owned);
   }
 }
@@ -140,7 +142,7 @@ LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, const 
     const double own = b->shown[BOND_SHOWN * (int64_t)here[n] + 7],
                  other = b->shown[BOND_SHOWN * (int64_t)there[n] + 7];
     const bool mixed = b->material[here[n] / SLICE] != b->material[there[n] / SLICE];
-    lever[n] = f->intact[slot] >> lane & 1 ? 0.5 * (mixed ? (second ? other : own) : own + other) : 0;
+    lever[n] = f->intact[slot] >> lane & 1 ? (mixed ? (second ? other : own) : own + other) : 0;
     if (f->scale) lever[n] *= f->scale[place];
     if (b->surface) lever[n] *= (double)b->surface[slot * SLICE + lane];
   }
@@ -214,20 +216,17 @@ LANES_INLINE void resist_lattice(const BondBased *b, const double *const u[3], i
   }
 }
 
-LANES_INLINE void resist_stored(const BondBased *b, int64_t slice, int64_t slot, int half, const StretchHere *here,
+LANES_INLINE void resist_stored(const BondBased *b, int64_t slot, int half, const StretchHere *here, StretchWalk *walk,
                                 Lanes force[3])
 {
-  const Family *f = b->family;
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
+  const int64_t at = walk->at;
   const int32_t *ahead = b->bonds->stored_row + at + FAMILY_AHEAD * SLICE;
-  Lanes x[QUAD], u[QUAD], pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
-  family_fetch_ahead(f, at, b->shown, BOND_SHOWN);
+  Lanes pull = lanes_gather(b->pull, b->bonds->stored_row + at);
   __builtin_prefetch((const void *)((uintptr_t)ahead + 4 * FAMILY_AHEAD * SLICE * sizeof *ahead));
   for (int k = 0; k < LANES; ++k) __builtin_prefetch(b->pull + ahead[k]);
-  lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + at, x);
-  lanes_gather_rows(b->shown + QUAD, BOND_SHOWN, f->neighbour + at, u);
-  pull = lanes_intact(f->intact[slot], half, pull * x[3]);
-  for (int k = 0; k < 3; ++k) force[k] += pull * ((x[k] - here->x[k]) + (u[k] - here->u[k]));
+  const StretchShown there = stretch_next(walk);
+  pull = lanes_intact(b->family->intact[slot], half, pull * there.x[3]);
+  for (int k = 0; k < 3; ++k) force[k] += pull * ((there.x[k] - here->x[k]) + (there.u[k] - here->u[k]));
 }
 
 LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
@@ -242,7 +241,8 @@ LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
   for (int64_t slot = f->first[slice]; slot < stored; ++slot) resist_lattice(b, u, slice, slot, gaps, force, own);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere here = stretch_here(b->particles, slice, half);
-    for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slice, slot, half, &here, force[half]);
+    StretchWalk walk = stretch_walk(f, b->shown, stored, last, half);
+    for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slot, half, &here, &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);

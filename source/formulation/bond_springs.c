@@ -53,7 +53,5 @@ int bond_springs_create(BondBased *b, Error *error)
 
 void bond_note_gaps(BondBased *b, int64_t slice)
 {
-  const Family *f = b->family;
-  b->gaps[slice] = 0;
-  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) b->gaps[slice] |= f->intact[slot] != UINT8_MAX;
+  b->gaps[slice] = stretch_has_gaps(b->family, slice);
 }

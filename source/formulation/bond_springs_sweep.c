@@ -7,7 +7,7 @@
 
 typedef struct Sum {
   Lanes force[3], own[3]; /* own: displacements */
-  Lanes largest;          /* |d|, where that is not by the series */
+  Lanes largest;          /* d^2, where that is not by the series of a lattice */
   LanesWithin within;     /* the series */
 } Sum;
 
@@ -36,21 +36,24 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slice, int64_t slot, i
     sum->within = lanes_within(sum->within, d, lanes_repeated(length + LENGTH_LIMIT));
   } else {
     d *= -lanes_set(f->patterns[pattern].by_square);
-    sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
+    sum->largest = lanes_greatest(sum->largest, d * d);
     pull = lanes_set(0.5 * f->patterns[pattern].weight_by_length) * shortening(d, range);
   }
   if (corrected) pull *= bond_surface(b, slot, half);
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * twice[k];
 }
 
-/** Half a stored slot; its forces have their constants in them. */
-LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, const StretchHere *here,
-                             StretchRange range, Sum *sum)
+/** Half a stored slot; its forces have their constants in them.
+ *  @param[in] constant  of the particles */
+LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int half, bool gaps, bool corrected, Lanes constant,
+                             const StretchHere *here, StretchRange range, StretchWalk *walk, Sum *sum)
 {
-  const StretchEnds ends = stretch_ends(b->family, b->shown, slot, half, here);
-  sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
-  Lanes pull = bond_constant(b, slice, &ends) * (ends.weight * ends.by_length) * shortening(ends.d, range);
-  if (b->surface) pull *= bond_surface(b, slot, half);
+  const int64_t at = walk->at;
+  const StretchShown there = stretch_next(walk);
+  const StretchEnds ends = stretch_ends(b->family, b->by_length, &there, at, b->family->intact[slot], half, gaps, here);
+  sum->largest = lanes_greatest(sum->largest, ends.d * ends.d);
+  Lanes pull = (constant + ends.last) * (ends.weight * ends.by_length) * shortening(ends.d, range);
+  if (corrected) pull *= bond_surface(b, slot, half);
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * ends.y[k];
 }
 
@@ -70,13 +73,15 @@ LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool g
       add_lattice(b, slice, slot, half, gaps, corrected, range, &sum);
     for (int k = 0; k < 3; ++k) sum.force[k] *= scale;
     const StretchHere own = stretch_here(p, slice, half);
-    for (int64_t slot = stored; slot < last; ++slot) add_stored(b, slot, slice, half, &own, range, &sum);
+    const Lanes constant = lanes_set(stored < last ? b->shown[BOND_SHOWN * slice * SLICE + 7] : 0);
+    StretchWalk walk = stretch_walk(f, b->shown, stored, last, half);
+    for (int64_t slot = stored; slot < last; ++slot)
+      add_stored(b, slot, half, gaps, corrected, constant, &own, range, &walk, &sum);
     for (int k = 0; k < 3; ++k) lanes_store(p->internal[k] + here, sum.force[k]);
     if (!lanes_are_within(sum.within)) most = INFINITY;
     for (int k = 0; k < LANES; ++k) most = sum.largest[k] > most ? sum.largest[k] : most;
   }
-  if (range == RANGE_SERIES && most > range_limit[RANGE_SERIES]) return RANGE_NEWTON;
-  return stretch_range(most);
+  return stretch_range_after(range, most);
 }
 
 LANES_INLINE StretchRange resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)

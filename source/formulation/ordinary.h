@@ -81,11 +81,12 @@ struct Ordinary {
   double *change;               /* [places] of theta in a linearised step, then of a; NULL before */
   double *shown;                /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
   double *answer;               /* [places][2] a and b - a, for them too */
+  float *by_length;             /* of bonds in stored slots (stretch_lengths); NULL if there are none */
   double shortest;              /* of all bonds */
   breccia_deviator *deviators;  /* [materials] */
   Flow *flow;                   /* NULL: all families are elastic */
   uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;                /* [slices] 1: a bond of a lattice slot is missing */
+  uint8_t *gaps;                /* [slices] 1: bonds are missing (stretch_has_gaps) */
   const OrdinarySweeps *sweeps;
 };
 

@@ -130,7 +130,6 @@ static double shortest_bond(const Family *f)
 void ordinary_renew(void *formulation, int64_t slice)
 {
   Ordinary *o = formulation;
-  const Family *f = o->family;
   const Material *m = ordinary_material(o, slice * SLICE);
   const double shear = ordinary_shear(o->space, m),
                volumetric = o->dimensions * ordinary_bulk(o->space, m) - shear / o->dimensions;
@@ -140,8 +139,7 @@ void ordinary_renew(void *formulation, int64_t slice)
     o->shear[place] = shear * by_moment;
     if (!is_foreign(o->foreign, place)) o->left[place] = moment_of(o, place) * o->inverse[place] / o->dimensions;
   }
-  o->gaps[slice] = 0;
-  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) o->gaps[slice] |= f->intact[slot] != UINT8_MAX;
+  o->gaps[slice] = stretch_has_gaps(o->family, slice);
 }
 
 /* ---- making ---- */
@@ -157,6 +155,7 @@ void ordinary_destroy(void *formulation)
   double **const arrays[] = {&o->inverse, &o->left,  &o->volumetric, &o->shear, &o->share, &o->dilatation,
                              &o->base,    &o->slope, &o->change,     &o->shown, &o->answer};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
+  free(o->by_length);
   free(o->range);
   free(o->gaps);
   free(o);
@@ -173,6 +172,7 @@ static int allocate(Ordinary *o, Error *error)
   if (o->family->stored_slots) {
     failed |= !(o->shown = places_array(STRETCH_SHOWN * places, "force states", error));
     failed |= !(o->answer = places_array(2 * places, "force states", error));
+    failed |= !(o->by_length = stretch_lengths(o->family, error));
   }
   failed |= !(o->range = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
   failed |= !(o->gaps = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
@@ -295,6 +295,7 @@ size_t ordinary_bytes(const void *formulation)
   return (size_t)o->particles->places * sizeof(double) *
              (size_t)(7 + (o->shown ? STRETCH_SHOWN + 2 : 0) + (o->change ? 1 : 0)) +
          2 * (size_t)o->particles->slices +
+         (o->by_length ? (size_t)o->family->stored_slots * SLICE * sizeof *o->by_length : 0) +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
          ordinary_flow_bytes(o);
 }

@@ -29,7 +29,7 @@ LANES_INLINE Lanes series_of(const double terms[STRETCH_TERMS], Lanes d, Lanes s
 /* ---- dilatation ---- */
 
 typedef struct Dilated {
-  Lanes sum, largest; /* |d|, where that is not by the series */
+  Lanes sum, largest; /* d^2, where that is not by the series of a lattice */
   LanesWithin within; /* the series */
 } Dilated;
 
@@ -55,16 +55,18 @@ LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slice, int64_t slot,
   }
   const Pattern *bond = &o->family->patterns[pattern];
   d *= -lanes_set(bond->by_square);
-  sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
+  sum->largest = lanes_greatest(sum->largest, d * d);
   sum->sum += lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range);
 }
 
-LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int half, StretchRange range, const StretchHere *here,
-                                Dilated *sum)
+LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
+                                const StretchHere *here, StretchWalk *walk, Dilated *sum)
 {
-  const StretchEnds ends = stretch_ends(o->family, o->shown, slot, half, here);
-  sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
-  sum->sum += lanes_intact(o->family->intact[slot], half, ends.weight * stretch_of(ends.d, range) * ends.square);
+  const int64_t at = walk->at;
+  const StretchShown there = stretch_next(walk);
+  const StretchEnds ends = stretch_ends(o->family, o->by_length, &there, at, o->family->intact[slot], half, gaps, here);
+  sum->largest = lanes_greatest(sum->largest, ends.d * ends.d);
+  sum->sum += ends.weight * stretch_of(ends.d, range) * ends.square;
 }
 
 /** Sums of a slice, all bonds by one way. @return the way that they should go */
@@ -82,8 +84,9 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
     for (int half = 0; half < HALVES; ++half) dilate_lattice(o, slice, slot, half, gaps, range, own[half], &sum[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere at = stretch_here(o->particles, slice, half);
+    StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      dilate_stored(o, slot, half, range, &at, &sum[half]);
+      dilate_stored(o, slot, half, gaps, range, &at, &walk, &sum[half]);
   }
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
@@ -91,8 +94,7 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
     if (!lanes_are_within(sum[half].within)) most = INFINITY;
     for (int k = 0; k < LANES; ++k) most = sum[half].largest[k] > most ? sum[half].largest[k] : most;
   }
-  if (range == RANGE_SERIES && most > range_limit[RANGE_SERIES]) return RANGE_NEWTON;
-  return stretch_range(most);
+  return stretch_range_after(range, most);
 }
 
 LANES_INLINE StretchRange dilate_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
@@ -165,18 +167,20 @@ LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slice, int64_t slot,
   for (int k = 0; k < 3; ++k) force[k] += pull * twice[k];
 }
 
-LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int half, StretchRange range, const StretchHere *here,
-                                Lanes base, Lanes slope, Lanes force[3])
+LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
+                                const StretchHere *here, Lanes base, Lanes slope, StretchWalk *walk, Lanes force[3])
 {
   const Family *f = o->family;
-  const StretchEnds ends = stretch_ends(f, o->shown, slot, half, here);
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
+  const int64_t at = walk->at;
+  const StretchShown there = stretch_next(walk);
+  const StretchEnds ends = stretch_ends(f, o->by_length, &there, at, f->intact[slot], half, gaps, here);
   Lanes answer[2];
   lanes_gather_pairs(o->answer, f->neighbour + at, answer);
   family_fetch_ahead(f, at, o->answer, 2);
   base += answer[0];
   slope += answer[1];
-  const Lanes pull = lanes_intact(f->intact[slot], half, ends.weight * (base + slope * shortening(ends.d, range)));
+  Lanes pull = ends.weight * (base + slope * shortening(ends.d, range));
+  if (gaps) pull = lanes_intact(f->intact[slot], half, pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * ends.y[k];
 }
 
@@ -195,8 +199,9 @@ LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, Stre
       resist_lattice(o, slice, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere here = stretch_here(o->particles, slice, half);
+    StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      resist_stored(o, slot, half, range, &here, base[half], slope[half], force[half]);
+      resist_stored(o, slot, half, gaps, range, &here, base[half], slope[half], &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);

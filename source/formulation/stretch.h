@@ -11,12 +11,19 @@
 typedef enum StretchRange { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } StretchRange;
 static const double range_limit[] = {0x1p-8, 0.25}; /* largest |d| */
 
-/** The first way that is good for d up to `largest`. */
+/** The first way that is good for all d of which this is the largest square. */
 static inline StretchRange stretch_range(double largest)
 {
-  return largest <= range_limit[RANGE_SERIES]   ? RANGE_SERIES
-         : largest <= range_limit[RANGE_NEWTON] ? RANGE_NEWTON
-                                                : RANGE_ANY;
+  return largest <= range_limit[RANGE_SERIES] * range_limit[RANGE_SERIES]   ? RANGE_SERIES
+         : largest <= range_limit[RANGE_NEWTON] * range_limit[RANGE_NEWTON] ? RANGE_NEWTON
+                                                                            : RANGE_ANY;
+}
+
+/** The way that a slice should go, of which all bonds have gone a way. */
+static inline StretchRange stretch_range_after(StretchRange range, double largest)
+{
+  const StretchRange next = stretch_range(largest);
+  return range == RANGE_SERIES && next == RANGE_ANY ? RANGE_NEWTON : next;
 }
 
 enum { STRETCH_TERMS = 6 };
@@ -64,11 +71,6 @@ LANES_INLINE Lanes shortening(Lanes d, StretchRange range)
 /* What stored slots read of a neighbour lies together, a line of the cache: x, y, z, V, u, v, w, and one number of the formulation's. */
 enum { STRETCH_SHOWN = 8 };
 
-/** Half a stored slot: y, d, 1 / |xi| (0 where there is no intact bond), influence x correction x V, and the neighbours' last number. */
-typedef struct StretchEnds {
-  Lanes y[3], d, square, by_length, weight, last; /* square: |xi|^2 */
-} StretchEnds;
-
 /** Positions and displacements of half a slice. */
 typedef struct StretchHere {
   Lanes x[3], u[3];
@@ -84,31 +86,110 @@ LANES_INLINE StretchHere stretch_here(const Particles *p, int64_t slice, int hal
   return here;
 }
 
-/** @param[in] shown  [places][STRETCH_SHOWN] */
-LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slot, int half,
-                                      const StretchHere *here)
-{
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
+/** x, y, z, V and u, v, w, last of the neighbours of half a stored slot. */
+typedef struct StretchShown {
   Lanes x[QUAD], u[QUAD];
-  StretchEnds ends = {.d = {0}, .square = {0}};
-  family_fetch_ahead(f, at, shown, STRETCH_SHOWN);
-  lanes_gather_rows(shown, STRETCH_SHOWN, f->neighbour + at, x);
-  lanes_gather_rows(shown + QUAD, STRETCH_SHOWN, f->neighbour + at, u);
+} StretchShown;
+
+/** A walk over stored slots of half a slice. On eight lanes three slots are under way, for which there are registers enough: while one is summed,
+ *  records of the next one are turned round, and those of the one after are loaded. Four lanes have half as many registers, and were slower so. */
+typedef struct StretchWalk {
+  const Family *family;
+  const double *shown; /* [places][STRETCH_SHOWN] */
+  int64_t at;          /* of the slot that comes next, in the arrays of stored slots */
+#ifdef BRECCIA_EIGHT_LANES
+  int64_t last; /* of the last slot */
+  StretchShown turned, loaded;
+#endif
+} StretchWalk;
+
+#ifdef BRECCIA_EIGHT_LANES
+/** Behind the last slot it is read again: what comes there is another slice's, which others may be writing. */
+LANES_INLINE StretchShown stretch_loaded(const StretchWalk *walk, int slots_ahead)
+{
+  StretchShown rows;
+  const int64_t at = walk->at + slots_ahead * SLICE;
+  const int32_t *place = walk->family->neighbour + (at < walk->last ? at : walk->last);
+  lanes_load_rows(walk->shown, STRETCH_SHOWN, place, rows.x);
+  lanes_load_rows(walk->shown + QUAD, STRETCH_SHOWN, place, rows.u);
+  return rows;
+}
+
+LANES_INLINE StretchShown stretch_turned(const StretchShown *rows)
+{
+  StretchShown turned;
+  lanes_turn_rows(rows->x, turned.x);
+  lanes_turn_rows(rows->u, turned.u);
+  return turned;
+}
+#endif
+
+/** @param[in] slot, last  it goes over slots slot .. last - 1 */
+LANES_INLINE StretchWalk stretch_walk(const Family *f, const double *shown, int64_t slot, int64_t last, int half)
+{
+  StretchWalk walk = {.family = f, .shown = shown};
+  if (slot >= last) return walk;
+  walk.at = (int64_t)f->base[slot] * SLICE + LANES * half;
+#ifdef BRECCIA_EIGHT_LANES
+  walk.last = walk.at + (last - 1 - slot) * SLICE;
+  const StretchShown rows = stretch_loaded(&walk, 0);
+  walk.turned = stretch_turned(&rows);
+  walk.loaded = stretch_loaded(&walk, 1);
+#endif
+  return walk;
+}
+
+/** What the next slot shows. */
+LANES_INLINE StretchShown stretch_next(StretchWalk *walk)
+{
+  family_fetch_ahead(walk->family, walk->at, walk->shown, STRETCH_SHOWN);
+#ifdef BRECCIA_EIGHT_LANES
+  const StretchShown there = walk->turned;
+  walk->turned = stretch_turned(&walk->loaded);
+  walk->loaded = stretch_loaded(walk, 2);
+#else
+  StretchShown there;
+  lanes_gather_rows(walk->shown, STRETCH_SHOWN, walk->family->neighbour + walk->at, there.x);
+  lanes_gather_rows(walk->shown + QUAD, STRETCH_SHOWN, walk->family->neighbour + walk->at, there.u);
+#endif
+  walk->at += SLICE;
+  return there;
+}
+
+/** 1 / |xi| of all stored bonds to single precision, by which stretch_ends finds it to double precision. Broken ones have it too.
+ *  @return [stored_slots][8], 0 where there never was a bond; or NULL */
+float *stretch_lengths(const Family *family, Error *error);
+
+/** Whether a slice lacks bonds: in a slot of a lattice one that is not there or broken, in a stored one one that is broken. */
+bool stretch_has_gaps(const Family *family, int64_t slice);
+
+/** Half a stored slot: y, d, |xi|^2, 1 / |xi|, influence x correction x V, and the neighbours' last number. */
+typedef struct StretchEnds {
+  Lanes y[3], d, square, by_length, weight, last;
+} StretchEnds;
+
+/** d and 1 / |xi| are 0 where there is no bond, and if the slice has gaps where it is broken.
+ *  With r = (1 / |xi|) (1 + e) as kept, |e| < 2^-24, the rest t = 1 - |xi|^2 r^2 = -2 e - e^2 makes of it 1 / |xi|^2 = r^2 (1 + t) and 1 / |xi| =
+ *  r (1 + t / 2), but for t^2 < 1.5e-14 of them: less than roundings of displacements make of d. It does not depend on the displacements, and is the
+ *  same for both ends.
+ *  @param[in] at  of the half slot in the arrays of stored slots */
+LANES_INLINE StretchEnds stretch_ends(const Family *f, const float *by_length, const StretchShown *there, int64_t at,
+                                      unsigned intact, int half, bool gaps, const StretchHere *here)
+{
+  StretchEnds ends = {.d = {0}, .square = {0}, .weight = there->x[3], .last = there->u[3]};
   for (int k = 0; k < 3; ++k) {
-    const Lanes xi = x[k] - here->x[k], eta = u[k] - here->u[k];
+    const Lanes xi = there->x[k] - here->x[k], eta = there->u[k] - here->u[k];
     ends.y[k] = xi + eta;
     ends.d += eta * (xi + ends.y[k]);
     ends.square += xi * xi;
   }
-  /* Quotient and root are found beside the other arithmetic; kept lengths would have to come from memory. */
-  const LaneMask intact =
-      lanes_half(f->intact[slot], half); /* where there is no bond, the particle has itself as neighbour */
-  const Lanes by_square = lanes_where(intact, lanes_set(1) / lanes_choose(intact, ends.square, lanes_set(1)));
-  ends.d *= by_square;
-  ends.by_length = lanes_root(by_square);
-  ends.weight = x[3];
+  Lanes kept = lanes_widen(by_length + at);
+  __builtin_prefetch((const void *)((uintptr_t)(by_length + at) + 4 * FAMILY_AHEAD * SLICE * sizeof *by_length));
+  if (gaps) kept = lanes_intact(intact, half, kept);
+  const Lanes by_square = kept * kept, rest = lanes_set(1) - ends.square * by_square;
+  ends.d *= by_square + by_square * rest;
+  ends.by_length = kept + (lanes_set(0.5) * kept) * rest;
   if (f->scale) ends.weight *= lanes_load(f->scale + at);
-  ends.last = u[3];
   return ends;
 }
 

@@ -31,6 +31,18 @@ static void displace(const Domain *d, double far)
   p->displacement[0][p->place_of[p->count / 3]] += far;
 }
 
+/** Some bonds, so that some slices have gaps and others none. */
+static void break_some(Domain *d)
+{
+  const Particles *p = d->particles;
+  const Region *region = &d->regions[0];
+  for (int64_t n = 0; n + 1 < p->count; n += 40) {
+    const int32_t end[2] = {p->place_of[n], p->place_of[n + 1]};
+    if (!family_break(&d->family, end[0], end[1])) continue;
+    for (int k = 0; k < 2 && region->type->renew; ++k) region->type->renew(region->formulation, end[k] / SLICE);
+  }
+}
+
 /** Forces of one evaluation, by `lanes`. @return [motions][places], to be freed */
 static double *forces_by(const char *lanes, const char *peridynamics, const char *law, const char *shape, double far,
                          int64_t *count)
@@ -41,6 +53,7 @@ static double *forces_by(const char *lanes, const char *peridynamics, const char
   *count = p->motions * p->places;
   double *forces = malloc(sizeof(double) * (size_t)*count);
   displace(&model->domain, far);
+  if (far > 0) break_some(&model->domain);
   Trap trap = {0};
   Text words = {0};
   if (trap_is_possible()) trap_begin(&trap); /* lanes without a bond divide by nothing either */
