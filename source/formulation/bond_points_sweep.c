@@ -109,8 +109,8 @@ LANES_INLINE void stretch_slots(const BondBased *b, const Chunk *chunk, int32_t 
 {
   const Family *f = b->family;
   const int64_t first = f->first[chunk->slice] + code / SLICE;
-  StretchHere here[HALVES];
-  StretchWalk walk[HALVES];
+  StretchHere here[HALVES] = {0};
+  StretchWalk walk[HALVES] = {0};
   for (int half = 0; half < HALVES; ++half) {
     here[half] = stretch_here(b->particles, chunk->slice, half);
     walk[half] = stretch_walk(f, b->shown, first, f->first[chunk->slice + 1], half);
