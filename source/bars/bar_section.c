@@ -16,9 +16,9 @@ static void check_slip(const DeckReader *reader, const BarSpec *bar)
   if (bar->anchored.count == 2 && !strcmp(bar->anchored.items[0], bar->anchored.items[1]))
     node_error(reader->document, section_node(bar, "anchored"), reader->error,
                "anchored: '%s' stands here twice; take [start, end], or leave one out", bar->anchored.items[0]);
-  if (bar->bonded.count && (bar->bonded.count != 2 || !(bar->bonded.values[0] < bar->bonded.values[1])))
+  if (bar->bonded.count && (bar->bonded.count != 2 || !(bar->bonded.values[0] <= bar->bonded.values[1])))
     node_error(reader->document, section_node(bar, "bonded"), reader->error,
-               "bonded: two lengths along the bar, from its first point; the second is the larger one");
+               "bonded: two lengths along the bar, from its first point; the second is not the smaller one");
   if (bar->bond) return;
   if (bar->anchored.count)
     node_error(reader->document, section_node(bar, "anchored"), reader->error,

@@ -488,7 +488,8 @@ static void bond_that_makes_no_sense_is_refused(void **state)
       {"anchored: [end]", "a bar in perfect bond slips nowhere; add 'bond'"},
       {"bonded: [0, 1]", "add 'bond'"},
       {"bond: {" FIB "}, bonded: [0.4, 0.2]", "two lengths along the bar"},
-      {"bond: {" FIB "}, bonded: [4, 5]", "nothing would hold it"},
+      {"bond: {" FIB "}, bonded: [4, 5]", "it is not anchored: nothing would hold it"},
+      {"bond: {" FIB "}, bonded: [0, 0], anchored: [start]", "it is anchored at one end only: nothing would hold it"},
       {"bond: {" FIB "}, bonded: [0.4, 0.91]", "bonded: bar 'r' is 0.9 m long, from 0 to there"},
       {"bond: {" FIB "}, bonded: [-0.01, 0.9]", "bonded: bar 'r' is 0.9 m long, from 0 to there"},
       {"bond: {" FIB ", confinement: stirrups}", "confinement: counts where concrete splits; give 'splitting"}};
