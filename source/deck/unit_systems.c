@@ -81,7 +81,7 @@ ut_system *unit_system_usual(void)
   make_base("radian", "rad", ut_new_dimensionless_unit(system));
   for (size_t k = 0; k < sizeof usual / sizeof *usual; ++k) {
     ut_unit *of = ut_parse(system, usual[k].of, UT_ASCII);
-    if (!of || !usual[k].prefix) {
+    if (!of || usual[k].prefix == 0) {
       map_symbol(usual[k].symbol, of);
       continue;
     }
