@@ -87,9 +87,10 @@ static int check_bonded(const Bars *b, int n, double surface, const ForcesParts 
   const BarSpec *bar = b->specs->items[n];
   const Node *node = section_node(bar, "bonded");
   if (!(surface > 0) && bar->anchored.count < 2)
-    return node_error(parts->reader->document, node, parts->reader->error,
-                      "bonded: no part of bar '%s' lies between these lengths along it, and it is %s: nothing would hold it",
-                      bar->head.name, bar->anchored.count ? "anchored at one end only" : "not anchored");
+    return node_error(
+        parts->reader->document, node, parts->reader->error,
+        "bonded: no part of bar '%s' lies between these lengths along it, and it is %s: nothing would hold it",
+        bar->head.name, bar->anchored.count ? "anchored at one end only" : "not anchored");
   const double length = length_of(b, n);
   if (!bar->bonded.count ||
       (bar->bonded.values[0] >= -rounding * length && bar->bonded.values[1] <= (1 + rounding) * length))
