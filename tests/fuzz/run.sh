@@ -1,32 +1,19 @@
 #!/bin/sh
-# fuzz_deck from the decks of the examples and fuzz_model from small ones, then fuzz_server and fuzz_client from
-# conversations, two at a time, for so many seconds each, or, if FUZZ_RUNS is set, so many inputs; FUZZ_ONLY names one of them.
+# fuzz_deck from the decks of the examples, fuzz_model from small ones, then fuzz_server and fuzz_client from
+# conversations, for so many seconds each, or, if FUZZ_RUNS is set, so many inputs; FUZZ_ONLY names one of them.
 set -eu
 cd "$(dirname "$0")/../.."
 limit=${FUZZ_RUNS:+-runs=$FUZZ_RUNS}
 limit=${limit:--max_total_time=$1}
 # libfyaml loses what it grows for a text of more than 64 parts, as \\n is between double quotation marks. Only here: elsewhere what we lose of a deck is to be seen.
 { cat tests/leaks.txt && echo leak:libfyaml; } > build/fuzz/leaks.txt
-running=""
-trap 'for one in $running; do kill "${one#*:}"; done; exit 130' INT TERM
-fuzz() { # fuzz TARGET LONGEST FOLDER [options]: begins, with inputs of so many bytes at most, from those in the folder
+fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most, from those in the folder
   target=$1 longest=$2 folder=$3
   shift 3
   [ "${FUZZ_ONLY:-$target}" = "$target" ] || return 0
-  rm -f "build/fuzz/$target.log"
   LSAN_OPTIONS="suppressions=build/fuzz/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" \
     -seed="${FUZZ_SEED:-0}" -max_len="$longest" -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
-    -verbosity=0 -print_final_stats=1 "$@" "$folder" > "build/fuzz/$target.log" 2>&1 &
-  running="$running $target:$!"
-}
-end() { # of those that run: what they say, and whether all ended well
-  status=0
-  for one in $running; do
-    wait "${one#*:}" || status=1
-    cat "build/fuzz/${one%:*}.log"
-  done
-  running=""
-  [ $status = 0 ] || exit 1
+    -verbosity=0 -print_final_stats=1 "$@" "$folder"
 }
 
 # A deck of each law of the laboratory's examples, and those of bodies of all kinds.
@@ -71,7 +58,6 @@ loads: [{name: pull, on: {face: x+}, velocity: ["${sin(30 deg)*c}", free, free]}
 solve: {explicit: {end time: "${(1 + 2)^2 * 1 ms - abs(-1 us)}"}}
 Y
 fuzz fuzz_deck 4096 build/fuzz/corpus -dict=tests/fuzz/deck.dict
-end
 
 mkdir -p build/fuzz/frames
 # A conversation: CREATE of two points, a trial, a commit with a trial, save.
@@ -90,4 +76,3 @@ mkdir -p build/fuzz/answers
   printf '\1\0\0\0\0\0\0\30%24s' ''; } > build/fuzz/answers/uniaxial
 printf '\1\0\0\0\1\0\0\0\1\0\0\0\0\100\0\0' > build/fuzz/answers/refusal-without-words
 fuzz fuzz_client 512 build/fuzz/answers
-end
