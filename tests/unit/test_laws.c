@@ -474,6 +474,66 @@ static void plane_stress_depends_on_no_other_point(void **state)
   }
 }
 
+static int relying_values(const void *constants)
+{
+  (void)constants;
+  return 2;
+}
+static void relying_begin(const void *constants, double *history)
+{
+  (void)constants;
+  history[0] = 5;
+  history[1] = 0;
+}
+/** A law that softens with its strain over the length and hardens across the plane, writes the second of its numbers only, and gives up where the first is not there. */
+static int relying_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    double e[6], size = 0;
+    if (batch->committed[2 * i] != 5 || batch->trial[2 * i] != 5) return i;
+    for (int k = 0; k < 6; ++k) size += fabs(e[k] = batch->strain[k][i]);
+    batch->trial[2 * i + 1] = size;
+    const double left = 1 / (1 + size / batch->length[i]), volumetric = 6e4 * (e[XX] + e[YY] + e[ZZ]);
+    for (int k = 0; k < 6; ++k) batch->stress[k][i] = left * ((k < 3 ? volumetric : 0) + (k < 3 ? 12e4 : 6e4) * e[k]);
+    batch->stress[ZZ][i] += left * 1e9 * pow(e[ZZ], 3);
+    for (int k = 0; k < 36 && batch->tangent; ++k)
+      batch->tangent[36 * i + k] = left * ((k % 7 ? 0 : k / 7 < 3 ? 12e4 : 6e4) + (k / 6 < 3 && k % 6 < 3 ? 6e4 : 0));
+  }
+  return -1;
+}
+
+/** Points that need more iterations than others are handed to the law with all that it is promised: lengths, and trial histories that are twins of the committed ones. */
+static void plane_stress_hands_over_lengths_and_twins(void **state)
+{
+  (void)state;
+  static const double length = 0.07; /* of plane_stress_points */
+  Material m = samples[0].make();
+  breccia_law law = *m.law;
+  law.history_values = relying_values;
+  law.begin = relying_begin;
+  law.update = relying_update;
+  m.law = &law;
+  m.bulk = 1e5;
+  m.shear = 6e4;
+  m.history_values = 2;
+  Points points = plane_stress_points(&m);
+  for (int i = 0; i < SLICE; ++i) points.strain[XX][i] = i % 2 ? 1e-9 : 1e-2 * (i + 1);
+  for (int keep = 0; keep < 2; ++keep) {
+    points_keep_tangents(&points, keep, NULL);
+    assert_int_equal(points_update(&points, 0, SLICE, points.strain, points.stress), -1);
+    for (int i = 0; i < SLICE; ++i) {
+      const double xx = points.strain[XX][i], zz = points.strain[ZZ][i];
+      const double expected = (18e4 * xx + 6e4 * zz) / (1 + (xx + fabs(zz)) / length);
+      assert_near(6e4 * xx + 18e4 * zz + 1e9 * pow(zz, 3), 0, 1e-9 * 6e4 * xx);
+      assert_near(points.stress[XX][i], expected, 1e-12 * expected);
+      points.strain[ZZ][i] = 0; /* and once more, with tangents */
+    }
+  }
+  points_destroy(&points);
+  material_destroy(&m);
+}
+
 /** Cracked through, a point dilates however far it is strained across the plane, without coming to a stress of exactly nothing there, and Newton's method leads
  *  anywhere. The second one has come to the plane without a strain in it; the last two came to strains of a hundred. */
 static void plane_stress_holds_where_cracks_stand_open(void **state)
@@ -665,6 +725,7 @@ int main(void)
       cmocka_unit_test(smaller_steps_change_little),
       cmocka_unit_test(plane_stress_holds_whatever_the_path),
       cmocka_unit_test(plane_stress_depends_on_no_other_point),
+      cmocka_unit_test(plane_stress_hands_over_lengths_and_twins),
       cmocka_unit_test(plane_stress_holds_where_cracks_stand_open),
       cmocka_unit_test(a_strain_that_is_no_number_is_reported),
       cmocka_unit_test(the_elastic_stage_is_elastic),
