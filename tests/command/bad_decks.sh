@@ -429,7 +429,7 @@ bar "$along, diameter: 16 mm, anchored: [start]" 17:79 "anchored: a bar in perfe
 bar "$along, diameter: 16 mm, $fib, anchored: [middle]" 17:136 "anchored: 'middle' is no end of a bar; take 'start' (its first point) or 'end' (its last)"
 bar "$along, diameter: 16 mm, $fib, anchored: [end, end]" 17:136 "anchored: 'end' stands here twice; take [start, end], or leave one out"
 bar "$along, diameter: 16 mm, $fib, bonded: [0, 900]" 17:136 "bonded: bar 'r' is 0.9 m long, from 0 to there; give lengths along it"
-bar "$along, diameter: 16 mm, $fib, bonded: [0.5, 0.1]" 17:136 'bonded: two lengths along the bar, from its first point; the second is the larger one'
+bar "$along, diameter: 16 mm, $fib, bonded: [0.5, 0.1]" 17:136 'bonded: two lengths along the bar, from its first point; the second is not the smaller one'
 bar "$along, diameter: 16 mm, bond: yes" 17:85 'bond: expected keys and values'
 bar "$along, diameter: 16 mm, bond: {law: linear}" 17:79 "stiffness: law 'linear' needs it, the stress on the surface of the bar per slip, like 100 MPa/mm"
 bar "$across, diameter: 16 mm, repeat: {along: [1, 0, 0], pitch: 0, number: 3}" 17:113 'pitch: 0 is out of range'
