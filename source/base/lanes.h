@@ -20,6 +20,9 @@ typedef double Lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t LaneMask __attribute__((vector_size(8 * LANES)));
 /* Four numbers, however many lanes there are. */
 typedef double Quad __attribute__((vector_size(8 * QUAD)));
+/* The same where they stand in memory, at any number. Copied by memcpy, gcc takes them for integers, and hands them over to arithmetic through the stack. */
+typedef double LanesInMemory __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+typedef double QuadInMemory __attribute__((vector_size(8 * QUAD), aligned(8), may_alias));
 
 /* Hot loops in files that are compiled once are compiled once per processor generation and chosen when the program starts. The sanitizers' start-up
  * comes after that choice, so their builds have the plain version only; and clang does not let functions of another generation pass vectors to
@@ -45,13 +48,13 @@ typedef double Quad __attribute__((vector_size(8 * QUAD)));
 /* The thread sanitizer sees no loads and stores of more than 16 bytes: for it (BRECCIA_NARROW_LANES) they are made one by one. */
 LANES_INLINE Lanes lanes_load(const double *from)
 {
-  Lanes lanes;
 #ifdef BRECCIA_NARROW_LANES
+  Lanes lanes;
   for (int k = 0; k < LANES; ++k) lanes[k] = from[k];
-#else
-  memcpy(&lanes, from, sizeof lanes);
-#endif
   return lanes;
+#else
+  return *(const LanesInMemory *)from;
+#endif
 }
 
 LANES_INLINE void lanes_store(double *to, Lanes lanes)
@@ -59,19 +62,19 @@ LANES_INLINE void lanes_store(double *to, Lanes lanes)
 #ifdef BRECCIA_NARROW_LANES
   for (int k = 0; k < LANES; ++k) to[k] = lanes[k];
 #else
-  memcpy(to, &lanes, sizeof lanes);
+  *(LanesInMemory *)to = lanes;
 #endif
 }
 
 LANES_INLINE Quad quad_load(const double *from)
 {
-  Quad quad;
 #ifdef BRECCIA_NARROW_LANES
+  Quad quad;
   for (int k = 0; k < QUAD; ++k) quad[k] = from[k];
-#else
-  memcpy(&quad, from, sizeof quad);
-#endif
   return quad;
+#else
+  return *(const QuadInMemory *)from;
+#endif
 }
 
 LANES_INLINE void quad_store(double *to, Quad quad)
@@ -79,7 +82,7 @@ LANES_INLINE void quad_store(double *to, Quad quad)
 #ifdef BRECCIA_NARROW_LANES
   for (int k = 0; k < QUAD; ++k) to[k] = quad[k];
 #else
-  memcpy(to, &quad, sizeof quad);
+  *(QuadInMemory *)to = quad;
 #endif
 }
 

@@ -62,8 +62,8 @@ typedef struct LinkDamage {
 
 /** What sweeps over links do, for each kind of vectors. */
 typedef struct MicropolarSweeps {
-  /** Forces and moments on a slice, by series where stretches and rotations of all of its links are small. @return whether it went by them */
-  bool (*resist)(const Micropolar *m, int64_t slice);
+  /** Forces and moments on a slice. */
+  void (*resist)(const Micropolar *m, int64_t slice);
   /** Their changes with changes of displacements and rotations, which stand in their places. @param[in] at  where the step was linearised */
   void (*resist_changes)(const Micropolar *m, double *const *at, int64_t slice);
   /** What changes of rotations of places are as spins. NULL: the same. */

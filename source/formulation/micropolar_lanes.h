@@ -200,21 +200,23 @@ LANES_INLINE Lanes free_of(const Micropolar *m, const LinkLanes *l)
 typedef struct ChordLanes {
   Lanes m[3];    /* to the other end, of length 1 */
   Lanes inverse; /* reference over present length */
-  Lanes d;       /* (|y|^2 - |xi|^2) / |xi|^2 */
   Lanes stretch; /* without the free strain */
 } ChordLanes;
 
-/** @param[in] any  of any stretches, or within the series */
-LANES_INLINE ChordLanes chords_of(const Micropolar *m, const LinkLanes *l, int dimensions, bool any)
+/** Of any stretches. Where the series does for all lanes it spares the root and the quotients. */
+LANES_INLINE ChordLanes chords_of(const Micropolar *m, const LinkLanes *l, int dimensions)
 {
-  ChordLanes c = {.d = {0}};
+  ChordLanes c;
+  Lanes d = {0};
   for (int k = 0; k < dimensions; ++k) {
     c.m[k] = l->n[k] + l->e[k];
-    c.d += l->e[k] * (l->n[k] + c.m[k]);
+    d += l->e[k] * (l->n[k] + c.m[k]);
   }
-  const Lanes g = shortening(c.d, any ? RANGE_ANY : RANGE_SERIES);
+  const LaneMask far = (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[RANGE_SERIES]));
+  Lanes g = shortening_series(d);
+  if (lanes_any(far)) g = lanes_choose(far, shortening(d, RANGE_ANY), g);
   c.inverse = lanes_set(1) - g;
-  c.stretch = c.d * c.inverse - g - free_of(m, l);
+  c.stretch = d * c.inverse - g - free_of(m, l);
   for (int k = 0; k < dimensions; ++k) c.m[k] *= c.inverse;
   return c;
 }
@@ -253,13 +255,11 @@ LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
   return micropolar_is_weak(m, slice) ? &m->damage->laws[m->particles->block[slice]] : NULL;
 }
 
-/** Whether the series of intact links hold too: of their lengths, by d, and of both end rotations, by their cosines. */
-LANES_INLINE LanesWithin links_within(LanesWithin so_far, const LinkLanes *l, Lanes d, Lanes cosine, Lanes other)
+/** Where links that bend have an end that has turned too far for the series, by the cosines of both. Torn links bend no more: what hangs on them may turn as it likes. */
+LANES_INLINE LaneMask turned_far(Lanes bending, Lanes cosine, Lanes other)
 {
-  const Lanes limit = lanes_set(largest_cosine_loss), one = lanes_set(1);
-  so_far = lanes_within_where(so_far, l->intact, l->half, d, lanes_set(range_limit[RANGE_SERIES]));
-  so_far = lanes_within_where(so_far, l->intact, l->half, one - cosine, limit);
-  return lanes_within_where(so_far, l->intact, l->half, one - other, limit);
+  return (LaneMask)(lanes_least(cosine, other) < lanes_set(1 - largest_cosine_loss)) &
+         (LaneMask)(bending > lanes_set(0));
 }
 
 #endif

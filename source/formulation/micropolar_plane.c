@@ -2,42 +2,45 @@
  * an end rotation is the cross product of the chord with where the section points, and the angle a series of it. */
 #include "formulation/micropolar_lanes.h"
 
-/** End rotations from the chord, and their cosines. */
+/** End rotations from the chord. */
 typedef struct AngleLanes {
-  Lanes here, other, cosine[2];
+  Lanes here, other;
 } AngleLanes;
 
-/** @param[in] cosine, sine  of the rotation of this end @param[in] any  of any rotations, or within the series */
+/** @param[in] cosine, sine  of the rotation of this end @param[in] bending  stiffness of the links */
 LANES_INLINE AngleLanes angles_of(const Micropolar *m, const LinkLanes *l, const ChordLanes *chord, Lanes cosine,
-                                  Lanes sine, bool any)
+                                  Lanes sine, Lanes bending)
 {
   const Lanes nx = l->n[0], ny = l->n[1], mx = chord->m[0], my = chord->m[1];
   const Lanes far_cosine = of_others(l, m->shown[0]), far_sine = of_others(l, m->shown[1]);
   const Lanes ax = cosine * nx - sine * ny, ay = sine * nx + cosine * ny;
   const Lanes bx = far_cosine * nx - far_sine * ny, by = far_sine * nx + far_cosine * ny;
   const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
-  AngleLanes angles = {.cosine = {mx * ax + my * ay, mx * bx + my * by}};
-  angles.here = here * end_rotation(here * here, angles.cosine[0], any).factor;
-  angles.other = other * end_rotation(other * other, angles.cosine[1], any).factor;
-  return angles;
+  const Lanes here_cosine = mx * ax + my * ay, other_cosine = mx * bx + my * by;
+  Lanes factor = end_rotation(here * here, here_cosine, false).factor,
+        other_factor = end_rotation(other * other, other_cosine, false).factor;
+  const LaneMask far = turned_far(bending, here_cosine, other_cosine);
+  if (lanes_any(far)) {
+    factor = lanes_choose(far, end_rotation(here * here, here_cosine, true).factor, factor);
+    other_factor = lanes_choose(far, end_rotation(other * other, other_cosine, true).factor, other_factor);
+  }
+  return (AngleLanes){here * factor, other * other_factor};
 }
 
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
   Lanes u[2], cosine, sine;
   Lanes force[2], moment;
-  LanesWithin within; /* the series */
 } HalfSlice;
 
 LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
-                           bool any, HalfSlice *own)
+                           HalfSlice *own)
 {
-  const ChordLanes chord = chords_of(m, l, 2, any);
-  const AngleLanes angles = angles_of(m, l, &chord, own->cosine, own->sine, any);
+  const ChordLanes chord = chords_of(m, l, 2);
   weaken(m, weak, l, chord.stretch, &stiffness);
+  const AngleLanes angles = angles_of(m, l, &chord, own->cosine, own->sine, stiffness.bending);
   const Lanes sum = angles.here + angles.other, pull = stiffness.axial * chord.stretch,
               shear = lanes_set(6) * stiffness.bending * l->by_length * chord.inverse * sum;
-  if (!any) own->within = links_within(own->within, l, chord.d, angles.cosine[0], angles.cosine[1]);
   own->force[0] += pull * chord.m[0];
   own->force[0] += shear * chord.m[1];
   own->force[1] += pull * chord.m[1];
@@ -45,9 +48,8 @@ LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLan
   own->moment -= stiffness.bending * (sum + sum + (angles.here + angles.here));
 }
 
-/** Both kinds of slots have a loop of their own: in one loop for both, forces take 1.5 to 2 times as long, as vectors of it go through memory.
- *  @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
-LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
+/** Both kinds of slots have a loop of their own: in one loop for both, forces take 1.5 to 2 times as long, as vectors of it go through memory. */
+static void resist(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -57,31 +59,21 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
     HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
                      .cosine = lanes_load(m->shown[0] + place),
                      .sine = lanes_load(m->shown[1] + place),
-                     .moment = {0},
-                     .within = lanes_all_within()};
+                     .moment = {0}};
     own.force[0] = own.force[1] = lanes_set(0);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
       const LinkLanes l = lattice_links(m, p->displacement, place, slot, half, 2, own.u);
-      add_link(m, &l, lattice_stiffness(m, &l), weak, any, &own);
+      add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
       const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slice, slot), 2, own.u);
-      add_link(m, &l, stored_stiffness(m, &l), weak, any, &own);
+      add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
-    if (!any && !lanes_are_within(own.within)) return false;
     lanes_store(p->internal[0] + place, own.force[0]);
     lanes_store(p->internal[1] + place, own.force[1]);
     lanes_store(p->internal[2] + place, lanes_set(0));
     lanes_store(p->internal[ROTATION] + place, own.moment);
   }
-  return true;
-}
-
-static bool resist(const Micropolar *m, int64_t slice)
-{
-  if (sweep(m, slice, false)) return true;
-  sweep(m, slice, true);
-  return false;
 }
 
 /* ---- energies ---- */
@@ -98,11 +90,11 @@ static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
     Lanes sum = lanes_set(0); /* per volume of this end, times the weights of the bonds */
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       const LinkLanes l = links_of(m, p->displacement, slice, slot, half, own_bits(m, slice, slot), 2, u);
-      const ChordLanes chord = chords_of(m, &l, 2, true);
-      const AngleLanes angles = angles_of(m, &l, &chord, cosine, sine, true);
-      const Lanes a = angles.here, b = angles.other;
+      const ChordLanes chord = chords_of(m, &l, 2);
       StiffnessLanes stiffness = stiffness_of_links(m, &l);
       weaken(m, weak, &l, chord.stretch, &stiffness);
+      const AngleLanes angles = angles_of(m, &l, &chord, cosine, sine, stiffness.bending);
+      const Lanes a = angles.here, b = angles.other;
       sum += lanes_set(0.5) * stiffness.axial * chord.stretch * chord.stretch / l.by_length +
              lanes_set(2) * stiffness.bending * (a * a + a * b + b * b);
     }
@@ -124,9 +116,9 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
                              const breccia_link *weak, HalfChange *own)
 {
   double *const *v = m->particles->displacement;
-  const ChordLanes chord = chords_of(m, l, 2, true);
-  const AngleLanes angles = angles_of(m, l, &chord, own->cosine, own->sine, true);
+  const ChordLanes chord = chords_of(m, l, 2);
   weaken(m, weak, l, chord.stretch, &stiffness);
+  const AngleLanes angles = angles_of(m, l, &chord, own->cosine, own->sine, stiffness.bending);
   const Lanes mx = chord.m[0], my = chord.m[1], over_length = l->by_length * chord.inverse;
   const Lanes dx = lanes_intact(l->intact, l->half, of_others(l, v[0]) - own->v[0]),
               dy = lanes_intact(l->intact, l->half, of_others(l, v[1]) - own->v[1]);

@@ -11,7 +11,6 @@
 typedef struct HalfSlice {
   Lanes u[3], q[4], turned[3][3]; /* quaternion, and its matrix */
   Lanes force[3], moment[3];
-  LanesWithin within; /* the series */
 } HalfSlice;
 
 /** R n. */
@@ -47,8 +46,9 @@ typedef struct Spins {
   Lanes own[3], both[3];
 } Spins;
 
+/** @param[in] any  of any end rotations, or within the series @param[out] far  where it is not */
 LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes n[3], const Lanes chord[3],
-                            const StiffnessLanes *stiffness, bool any, Lanes cosine[2])
+                            const StiffnessLanes *stiffness, bool any, LaneMask *far)
 {
   Lanes a[3], c[3], b[3], d[3]; /* where the sections of this end and the other point, and the chord x these */
   Spins s;
@@ -57,8 +57,8 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   cross_lanes(chord, a, b);
   cross_lanes(chord, c, d);
   const Lanes bb = dot_lanes(b, b), dd = dot_lanes(d, d), bd = dot_lanes(b, d), one = lanes_set(1);
-  cosine[0] = dot_lanes(chord, a);
-  cosine[1] = dot_lanes(chord, c);
+  const Lanes cosine[2] = {dot_lanes(chord, a), dot_lanes(chord, c)};
+  *far = turned_far(stiffness->bending, cosine[0], cosine[1]);
   const EndLanes ends[2] = {end_rotation(bb, cosine[0], any), end_rotation(dd, cosine[1], any)};
   const Lanes f = ends[0].factor, g = ends[1].factor, bend = ends[0].bend, other = ends[1].bend;
   const Lanes twice = stiffness->bending + stiffness->bending, by_f = twice * f, by_g = twice * g;
@@ -86,26 +86,46 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   return s;
 }
 
-LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
-                           bool any, HalfSlice *own)
+/** The same of any end rotations, where it is so. Out of line, as few links need it. */
+static __attribute__((noinline)) void find_far_spins(const HalfSlice *own, const Lanes q[4], const Lanes n[3],
+                                                     const Lanes chord[3], const StiffnessLanes *stiffness, Spins *s)
 {
-  const ChordLanes chord = chords_of(m, l, 3, any);
-  Lanes cosine[2] = {lanes_set(1), lanes_set(1)};
+  LaneMask far;
+  const Spins any = spins_of(own, q, n, chord, stiffness, true, &far);
+  for (int k = 0; k < 3; ++k) {
+    s->own[k] = lanes_choose(far, any.own[k], s->own[k]);
+    s->both[k] = lanes_choose(far, any.both[k], s->both[k]);
+  }
+}
+
+LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
+                           HalfSlice *own)
+{
+  const ChordLanes chord = chords_of(m, l, 3);
   weaken(m, weak, l, chord.stretch, &stiffness);
   const Lanes pull = stiffness.axial * chord.stretch;
   for (int k = 0; k < 3; ++k) own->force[k] += pull * chord.m[k];
-  if (stiffness.bends) {
-    Lanes q[4], across[3];
-    turns_of_others(m, l, q);
-    const Spins s = spins_of(own, q, l->n, chord.m, &stiffness, any, cosine);
-    const Lanes by_present = l->by_length * chord.inverse;
-    cross_lanes(chord.m, s.both, across);
-    for (int k = 0; k < 3; ++k) {
-      own->force[k] += by_present * across[k];
-      own->moment[k] -= s.own[k];
-    }
+  if (!stiffness.bends) return;
+  Lanes q[4], across[3];
+  LaneMask far;
+  turns_of_others(m, l, q);
+  Spins s = spins_of(own, q, l->n, chord.m, &stiffness, false, &far);
+  if (lanes_any(far)) { /* copies, so that what is summed stays in registers */
+    const HalfSlice end = *own;
+    const ChordLanes present = chord;
+    const StiffnessLanes left = stiffness;
+    Lanes n[3];
+    Spins any = s;
+    for (int k = 0; k < 3; ++k) n[k] = l->n[k];
+    find_far_spins(&end, q, n, present.m, &left, &any);
+    s = any;
   }
-  if (!any) own->within = links_within(own->within, l, chord.d, cosine[0], cosine[1]);
+  const Lanes by_present = l->by_length * chord.inverse;
+  cross_lanes(chord.m, s.both, across);
+  for (int k = 0; k < 3; ++k) {
+    own->force[k] += by_present * across[k];
+    own->moment[k] -= s.own[k];
+  }
 }
 
 /** The matrix of the own quaternion, as every link of the half slice turns its direction by it. */
@@ -118,16 +138,15 @@ LANES_INLINE void find_matrix(HalfSlice *own)
   }
 }
 
-/** Both kinds of slots have a loop of their own, as in the plane (micropolar_plane.c).
- *  @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
-LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
+/** Both kinds of slots have a loop of their own, as in the plane (micropolar_plane.c). */
+static void resist(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.within = lanes_all_within()};
+    HalfSlice own;
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(p->displacement[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);
@@ -136,26 +155,17 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
     find_matrix(&own);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
       const LinkLanes l = lattice_links(m, p->displacement, place, slot, half, 3, own.u);
-      add_link(m, &l, lattice_stiffness(m, &l), weak, any, &own);
+      add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
       const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slice, slot), 3, own.u);
-      add_link(m, &l, stored_stiffness(m, &l), weak, any, &own);
+      add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
-    if (!any && !lanes_are_within(own.within)) return false;
     for (int k = 0; k < 3; ++k) {
       lanes_store(p->internal[k] + place, own.force[k]);
       lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
     }
   }
-  return true;
-}
-
-static bool resist(const Micropolar *m, int64_t slice)
-{
-  if (sweep(m, slice, false)) return true;
-  sweep(m, slice, true);
-  return false;
 }
 
 /* ---- energies ---- */
@@ -174,7 +184,7 @@ LANES_INLINE void find_rotation(const Lanes q[4], const Lanes n[3], const Lanes 
 LANES_INLINE Lanes energy_of(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
                              const breccia_link *weak, const Lanes own[4])
 {
-  const ChordLanes chord = chords_of(m, l, 3, true);
+  const ChordLanes chord = chords_of(m, l, 3);
   weaken(m, weak, l, chord.stretch, &stiffness);
   const Lanes energy = lanes_set(0.5) * stiffness.axial * chord.stretch * chord.stretch / l->by_length;
   if (!stiffness.bends) return energy;
@@ -316,7 +326,7 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
                              const breccia_link *weak, HalfChange *own)
 {
   double *const *v = m->particles->displacement;
-  const ChordLanes links = chords_of(m, l, 3, true);
+  const ChordLanes links = chords_of(m, l, 3);
   const Lanes *chord = links.m, stretch = links.stretch, over_length = l->by_length * links.inverse;
   Lanes chord_change[3], apart[3];
   for (int k = 0; k < 3; ++k) apart[k] = lanes_intact(l->intact, l->half, of_others(l, v[k]) - own->v[k]);

@@ -1,9 +1,9 @@
 /* Plane stress of any law of points in space: the strain across the plane is found such that the stress there vanishes. */
 #include "base/tensor.h"
+#include "points/packed_points.h"
 #include "points/points_parts.h"
 
 #include <math.h>
-#include <string.h>
 
 breccia_batch batch_part(const breccia_batch *whole, const Material *m, int components, int first, int count)
 {
@@ -79,66 +79,14 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
   return m->law->update(m->constants, &one) < 0;
 }
 
-enum { PACKED_VALUES = 16 }; /* of histories of points that are packed, at most */
-
-/** Points of a batch that are still looked for, side by side: few of them need many iterations, and each evaluation of the others would be the same again. */
-typedef struct Packed {
-  int count, of[BATCH]; /* which points of the whole batch */
-  double strain[6][BATCH], stress[6][BATCH], length[BATCH], tangent[36 * BATCH];
-  double committed[PACKED_VALUES * BATCH], trial[PACKED_VALUES * BATCH];
-} Packed;
-
-/** Takes points out of a batch, the whole one or the packed one itself. @param[in] chosen  [count] rising numbers */
-static void pack(Packed *packed, const Material *m, const breccia_batch *from, bool is_packed, const int *chosen,
-                 int count)
-{
-  const size_t values = (size_t)m->history_values;
-  for (int j = 0; j < count; ++j) {
-    const int i = chosen[j];
-    if (is_packed && i == j) continue;
-    packed->of[j] = is_packed ? packed->of[i] : i;
-    for (int k = 0; k < 6; ++k) packed->strain[k][j] = from->strain[k][i];
-    if (from->length) packed->length[j] = from->length[i];
-    memmove(packed->committed + values * (size_t)j, from->committed + values * (size_t)i, sizeof(double) * values);
-    memmove(packed->trial + values * (size_t)j, from->trial + values * (size_t)i, sizeof(double) * values);
-  }
-  packed->count = count;
-}
-
-static breccia_batch packed_batch(Packed *packed, const breccia_batch *whole)
-{
-  breccia_batch batch = *whole;
-  batch.count = packed->count;
-  batch.committed = packed->committed;
-  batch.trial = packed->trial;
-  if (whole->tangent) batch.tangent = packed->tangent;
-  batch.length = whole->length ? packed->length : NULL;
-  for (int k = 0; k < 6; ++k) {
-    batch.strain[k] = packed->strain[k];
-    batch.stress[k] = packed->stress[k];
-  }
-  return batch;
-}
-
-/** What the law answered for a packed point, to its place in the whole batch. */
-static void give_back(const Packed *packed, const Material *m, int j, const breccia_batch *whole, double *strain_zz)
-{
-  const int i = packed->of[j];
-  const size_t values = (size_t)m->history_values;
-  strain_zz[i] = packed->strain[ZZ][j];
-  for (int k = 0; k < 6; ++k) whole->stress[k][i] = packed->stress[k][j];
-  memcpy(whole->trial + values * (size_t)i, packed->trial + values * (size_t)j, sizeof(double) * values);
-  if (whole->tangent) memcpy(whole->tangent + 36 * i, packed->tangent + 36 * j, sizeof(double) * 36);
-}
-
 /** The strain zz of a point, as it is looked for. */
 typedef struct Search {
   double begin, most; /* where it begins, and the largest that counts */
   double zz, stress;  /* the last one, and its stress */
   double before;      /* how large the stress before that was */
   double sides[2];    /* the last ones with a stress of either sign */
-  bool found[2];      /* whether there are any */
-  bool settled;
+  bool has_side[2];   /* whether there are any */
+  bool found;
 } Search;
 
 /* Times as far as a point is strained as it begins, or as elastic stiffness would have it: no answer lies further, as next to no stress divided by next to
@@ -162,22 +110,22 @@ static double next_zz(const Material *m, const breccia_batch *batch, int i, cons
   double slope = batch->tangent ? batch->tangent[36 * i + 7 * ZZ] : 0;
   if (!batch->tangent && zz != s->zz) slope = (stress - s->stress) / (zz - s->zz);
   const double next = zz - stress / (slope > 0 ? slope : elastic_zz(m));
-  if (batch->tangent || !s->found[0] || !s->found[1]) return next;
+  if (batch->tangent || !s->has_side[0] || !s->has_side[1]) return next;
   const double low = fmin(s->sides[0], s->sides[1]), high = fmax(s->sides[0], s->sides[1]);
   return next > low && next < high && fabs(stress) <= 0.5 * s->before ? next : 0.5 * (low + high);
 }
 
-typedef enum Look { IS_FREE, GOES_ON, SETTLED, FAILED } Look;
+typedef enum Look { FOUND, GOES_ON, FAILED } Look;
 
 /** Looks at the stress zz of a point and, where it is not nothing, goes on to another strain zz. */
 static Look take_step(const Material *m, const breccia_batch *batch, int i, bool last, Search *s, double *strain_zz)
 {
   const bool is_free = is_free_of_zz(m, batch, i, SHARP);
   const double stress = batch->stress[ZZ][i];
-  if (is_free && fabs(strain_zz[i]) <= s->most) return IS_FREE;
+  if (is_free && fabs(strain_zz[i]) <= s->most) return FOUND;
   if (!is_free && !last) {
     s->sides[stress > 0] = strain_zz[i];
-    s->found[stress > 0] = true;
+    s->has_side[stress > 0] = true;
     const double next = next_zz(m, batch, i, s);
     s->zz = strain_zz[i];
     s->before = fabs(s->stress);
@@ -187,7 +135,7 @@ static Look take_step(const Material *m, const breccia_batch *batch, int i, bool
   }
   const bool found = (!is_free && last && bisect_zz(m, batch, i, strain_zz[i], s->most, SHARP, strain_zz)) ||
                      bisect_zz(m, batch, i, s->begin, s->most, CLOSE, strain_zz);
-  return found ? SETTLED : FAILED;
+  return found ? FOUND : FAILED;
 }
 
 /** Strains zz of a whole batch as its searches began: another try begins there. @return the point that fails */
@@ -203,11 +151,11 @@ static int fail(const Search *searches, int count, int point, double *strain_zz)
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
   enum { MOST_ITERATIONS = 20 };
-  const bool may_pack = !m->remote && m->history_values <= PACKED_VALUES;
+  const bool may_pack = packed_points_take(m);
   double local[BATCH * 36], *const tangent = batch->tangent;
   Search searches[BATCH];
   bool is_packed = false;
-  Packed packed;
+  PackedPoints packed;
   breccia_batch now = *batch; /* the whole one, or what is left of it */
   double *zz = strain_zz;
   now.tangent = tangent ? tangent : local;
@@ -219,21 +167,21 @@ int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_
     for (int i = 0; i < now.count && iteration == 0; ++i) searches[i] = begin_search(m, &now, i);
     for (int i = 0; i < now.count; ++i) {
       const int of = is_packed ? packed.of[i] : i;
-      if (searches[of].settled) continue;
+      if (searches[of].found) continue;
       const Look look = take_step(m, &now, i, iteration == MOST_ITERATIONS, &searches[of], zz);
       if (look == FAILED) return fail(searches, batch->count, of, strain_zz);
-      searches[of].settled = look == SETTLED;
+      searches[of].found = look == FOUND;
       if (look == GOES_ON)
         left[count++] = i;
       else if (is_packed)
-        give_back(&packed, m, i, batch, strain_zz);
+        packed_points_give_back(&packed, m, i, batch, strain_zz);
     }
     if (!count) break;
     if (!may_pack) continue;
     if (!is_packed) now.tangent = tangent;
     if (count == now.count) continue;
-    pack(&packed, m, &now, is_packed, left, count);
-    now = packed_batch(&packed, batch);
+    packed_points_pack(&packed, m, &now, is_packed, left, count);
+    now = packed_points_batch(&packed, batch, count);
     zz = packed.strain[ZZ];
     is_packed = true;
   }
