@@ -255,7 +255,7 @@ LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
   return micropolar_is_weak(m, slice) ? &m->damage->laws[m->particles->block[slice]] : NULL;
 }
 
-/** Where links that bend have an end that has turned too far for the series, by the cosines of both. Torn links bend no more: what hangs on them may turn as it likes. */
+/** Where links that bend have an end that has turned too far for the series, by the cosines of both. Torn links do not bend, however far their ends have turned. */
 LANES_INLINE LaneMask turned_far(Lanes bending, Lanes cosine, Lanes other)
 {
   return (LaneMask)(lanes_least(cosine, other) < lanes_set(1 - largest_cosine_loss)) &
