@@ -203,7 +203,7 @@ typedef struct ChordLanes {
   Lanes stretch; /* without the free strain */
 } ChordLanes;
 
-/** Of any stretches. Where the series does for all lanes it spares the root and the quotients. */
+/** Of any stretches. Where the series is good for all lanes it spares the root and the quotients. */
 LANES_INLINE ChordLanes chords_of(const Micropolar *m, const LinkLanes *l, int dimensions)
 {
   ChordLanes c;

@@ -46,9 +46,9 @@ typedef struct Spins {
   Lanes own[3], both[3];
 } Spins;
 
-/** @param[in] any  of any end rotations, or within the series @param[out] far  where it is not */
+/** @param[in] any  of any end rotations, or within the series @param[out] cosine  of both end rotations */
 LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes n[3], const Lanes chord[3],
-                            const StiffnessLanes *stiffness, bool any, LaneMask *far)
+                            const StiffnessLanes *stiffness, bool any, Lanes cosine[2])
 {
   Lanes a[3], c[3], b[3], d[3]; /* where the sections of this end and the other point, and the chord x these */
   Spins s;
@@ -57,8 +57,8 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   cross_lanes(chord, a, b);
   cross_lanes(chord, c, d);
   const Lanes bb = dot_lanes(b, b), dd = dot_lanes(d, d), bd = dot_lanes(b, d), one = lanes_set(1);
-  const Lanes cosine[2] = {dot_lanes(chord, a), dot_lanes(chord, c)};
-  *far = turned_far(stiffness->bending, cosine[0], cosine[1]);
+  cosine[0] = dot_lanes(chord, a);
+  cosine[1] = dot_lanes(chord, c);
   const EndLanes ends[2] = {end_rotation(bb, cosine[0], any), end_rotation(dd, cosine[1], any)};
   const Lanes f = ends[0].factor, g = ends[1].factor, bend = ends[0].bend, other = ends[1].bend;
   const Lanes twice = stiffness->bending + stiffness->bending, by_f = twice * f, by_g = twice * g;
@@ -86,15 +86,16 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   return s;
 }
 
-/** The same of any end rotations, where it is so. Out of line, as few links need it. */
-static __attribute__((noinline)) void find_far_spins(const HalfSlice *own, const Lanes q[4], const Lanes n[3],
-                                                     const Lanes chord[3], const StiffnessLanes *stiffness, Spins *s)
+/** Takes in some lanes what holds of any end rotations. Out of line, as few links need it. @param[in] far  where ends have turned too far for the series */
+static __attribute__((noinline)) void take_far_spins(const HalfSlice *own, const Lanes q[4], const Lanes n[3],
+                                                     const Lanes chord[3], const StiffnessLanes *stiffness,
+                                                     const LaneMask *far, Spins *s)
 {
-  LaneMask far;
-  const Spins any = spins_of(own, q, n, chord, stiffness, true, &far);
+  Lanes cosine[2];
+  const Spins any = spins_of(own, q, n, chord, stiffness, true, cosine);
   for (int k = 0; k < 3; ++k) {
-    s->own[k] = lanes_choose(far, any.own[k], s->own[k]);
-    s->both[k] = lanes_choose(far, any.both[k], s->both[k]);
+    s->own[k] = lanes_choose(*far, any.own[k], s->own[k]);
+    s->both[k] = lanes_choose(*far, any.both[k], s->both[k]);
   }
 }
 
@@ -106,18 +107,19 @@ LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLan
   const Lanes pull = stiffness.axial * chord.stretch;
   for (int k = 0; k < 3; ++k) own->force[k] += pull * chord.m[k];
   if (!stiffness.bends) return;
-  Lanes q[4], across[3];
-  LaneMask far;
+  Lanes q[4], across[3], cosine[2];
   turns_of_others(m, l, q);
-  Spins s = spins_of(own, q, l->n, chord.m, &stiffness, false, &far);
+  Spins s = spins_of(own, q, l->n, chord.m, &stiffness, false, cosine);
+  const LaneMask far = turned_far(stiffness.bending, cosine[0], cosine[1]);
   if (lanes_any(far)) { /* copies, so that what is summed stays in registers */
     const HalfSlice end = *own;
     const ChordLanes present = chord;
     const StiffnessLanes left = stiffness;
+    const LaneMask where = far;
     Lanes n[3];
     Spins any = s;
     for (int k = 0; k < 3; ++k) n[k] = l->n[k];
-    find_far_spins(&end, q, n, present.m, &left, &any);
+    take_far_spins(&end, q, n, present.m, &left, &where, &any);
     s = any;
   }
   const Lanes by_present = l->by_length * chord.inverse;

@@ -1,4 +1,3 @@
-/* Some points of a batch side by side. */
 #include "points/packed_points.h"
 
 #include "base/tensor.h"
