@@ -311,6 +311,13 @@ typedef struct breccia_plot {
                      * field; NULL: the field */
   const double *times; /* [time_count] of curves over their length, up to 6; the states nearest to them are taken */
   int time_count;      /* 0: `state` */
+  const char *const *
+      of_bars; /* [of_bar_count] names of bars whose curves over length are drawn, one that is repeated for all of its lines */
+  int of_bar_count; /* 0: all bars, of many those with the largest values */
+  void (*replaces)(
+      void *context,
+      const char *
+          path); /* told, before `drawn`, of a picture whose path was not given and that has taken the place of another file; may be NULL */
 } breccia_plot;
 
 /** Fills in what a picture is like if nobody asks for something else: the last state, undistorted colours, no scale of displacements but 1. */

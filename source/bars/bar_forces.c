@@ -231,6 +231,24 @@ double bars_given(const void *forces)
   return ((const Bars *)forces)->given;
 }
 
+double bars_prestress_forces(const Bars *b)
+{
+  double sum = 0;
+  for (int n = 0; n < b->specs->count; ++n) {
+    const double pull = fabs(bar_young(b, n) * b->bar_area[n] * b->prestrain[n]);
+    for (int64_t e = b->first[n]; e <= b->first[n + 1] && pull > 0; ++e) {
+      double square = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double before = e > b->first[n] ? b->rest[e - 1][k] / b->length[e - 1] : 0,
+                     behind = e < b->first[n + 1] ? b->rest[e][k] / b->length[e] : 0;
+        square += (behind - before) * (behind - before);
+      }
+      sum += pull * sqrt(square);
+    }
+  }
+  return sum;
+}
+
 double bars_dissipated(const void *forces)
 {
   const Bars *b = forces;

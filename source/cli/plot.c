@@ -11,6 +11,7 @@ enum {
   COMPONENT,
   BARS,
   OVER_LENGTH,
+  OF_BARS_NAMED,
   STEP,
   TIME,
   DEFORMED,
@@ -39,6 +40,8 @@ static const Option options[] = {
      "instead: reinforcing bars over the pale body, coloured by what a deck may give its pictures as 'bars', like "
      "stress"},
     {"over-length", NULL, "with --bars: curves of it over the length of bars, of many those with the largest values"},
+    {"of-bars", "NAME[,NAME...]",
+     "with --over-length: of these bars only; one that is repeated stands for all of its lines"},
     {"step", "N|last|all", "which written step (last)"},
     {"time", "T[,T...]",
      "the written step nearest to this time, in the deck's unit; with --over-length up to six times"},
@@ -132,6 +135,38 @@ static int read_times(const char *words, double *times, int *count)
   return 1;
 }
 
+/** Names with commas between them. @return 0, or 1 after saying what is wrong */
+static int read_names(const char *words, breccia_plot *plot)
+{
+  enum { MOST_NAMES = 64, LONGEST = 4096 };
+  static char own[LONGEST];
+  static const char *names[MOST_NAMES];
+  char *rest = NULL;
+  if (strlen(words) >= LONGEST) {
+    complain("breccia plot: --of-bars: expected less than %d characters", LONGEST);
+    return 1;
+  }
+  strcpy(own, words);
+  for (char *name = strtok_r(own, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+    if (plot->of_bar_count == MOST_NAMES) {
+      complain("breccia plot: --of-bars: expected up to %d names", MOST_NAMES);
+      return 1;
+    }
+    names[plot->of_bar_count++] = name;
+  }
+  plot->of_bars = names;
+  if (plot->of_bar_count) return 0;
+  complain("breccia plot: --of-bars: expected names of bars with commas between them");
+  return 1;
+}
+
+static void tell_replaced(void *context, const char *path)
+{
+  (void)context;
+  fprintf(stderr, "breccia plot: %s has taken the place of the picture that was there; --output names another file\n",
+          path);
+}
+
 /** Which written states are asked for. */
 static int read_state(const char **values, breccia_plot *plot)
 {
@@ -167,6 +202,7 @@ static int read_plot(const char **values, breccia_plot *plot)
   plot->y_label = values[Y_LABEL];
   plot->path = values[MOVIE] ? values[MOVIE] : values[OUTPUT];
   plot->drawn = tell;
+  plot->replaces = tell_replaced;
   plot->broken_bonds = values[BROKEN] != NULL;
   plot->curve = values[ENERGY] ? NULL : values[CURVE];
   plot->overlay = values[OVERLAY];
@@ -183,6 +219,7 @@ static int read_plot(const char **values, breccia_plot *plot)
   if (values[RANGE] && !plot->each_range && read_pair(values[RANGE], "range", &plot->low, &plot->high)) return 1;
   if (values[VIEW] && read_pair(values[VIEW], "view", &plot->azimuth, &plot->elevation)) return 1;
   if (values[INSIDE] && read_box(values[INSIDE], plot->low_corner, plot->high_corner)) return 1;
+  if (values[OF_BARS_NAMED] && read_names(values[OF_BARS_NAMED], plot)) return 1;
   return read_state(values, plot);
 }
 
@@ -195,6 +232,7 @@ static const struct {
             {COMPONENT, OF_FIELD},
             {BARS, OF_BARS | OF_LENGTH},
             {OVER_LENGTH, OF_LENGTH},
+            {OF_BARS_NAMED, OF_LENGTH},
             {STEP, OF_BODY | OF_LENGTH},
             {TIME, OF_BODY | OF_LENGTH},
             {DEFORMED, OF_BODY},

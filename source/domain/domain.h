@@ -92,6 +92,7 @@ typedef struct Strains {
   int64_t known;       /* whether `tension` is up to date */
   double *growth;      /* of the step in which bonds break */
   double work;         /* that they have done so far */
+  double whole;        /* the largest sum of squares of a family's bond lengths, by volume, before anything broke */
 } Strains;
 
 typedef struct Domain {
@@ -277,6 +278,11 @@ void domain_halve_strains(Domain *domain);
 void domain_book_strains(Domain *domain);
 /** Work that strains of loads have done on the body so far: what it has received beyond the work of forces and motions. */
 double domain_strain_work(const Domain *domain);
+/** Adds to forces per volume what internal ones change by, with laws elastic and displacements as held, when strains of loads that begin with the stage under way
+ *  have grown (loading_grown_factor). Strains are as before then, internal forces those of neither. By one thread; `time` of the run. */
+int domain_add_grown_strains(Domain *domain, double time, double *const *force, Error *error);
+/** The sum of the sizes of forces that free strains of the body and those of its bars would exert on its particles if these had not moved. */
+double domain_forces_of_strains(Domain *domain);
 /** Strains of a state that has come back. */
 void domain_follow_strains(Domain *domain);
 void domain_strains_state(Domain *domain, StateList *list);

@@ -13,6 +13,7 @@
 #include "base/tensor.h"
 #include "loading/load.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /** Strain of bonds along the plane at which they are free of stress, over the free strain. */
@@ -84,6 +85,34 @@ static LoadStrains of_loads(const Domain *d)
                        .bar_count = bars ? bars->specs->count : 0};
 }
 
+/** Stress, alike in all directions that the body has, that takes away a free strain. */
+static double stress_against(const Domain *d, int64_t place)
+{
+  const Material *m = &d->materials[d->material[place / SLICE]];
+  const double strain = d->strains.given[place];
+  if (d->body.dimensions == 1) return material_young(m) * strain;
+  if (domain_region(d, place)->points.plane_stress) return material_young(m) / (1 - material_poisson(m)) * strain;
+  return 3 * m->bulk * strain;
+}
+
+/** The sum of the squares of bond lengths of a place, by volume. @param[in,out] force  what bonds add to it by the stresses against strains at both ends */
+static double squares_of_bonds(const Domain *d, int64_t place, double force[3])
+{
+  const Family *f = &d->family;
+  const int64_t slice = place / SLICE;
+  const double own = stress_against(d, place);
+  double squares = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+    const double volume = d->particles->volume[bond.neighbour],
+                 both = volume * (own + stress_against(d, bond.neighbour));
+    for (int k = 0; k < 3; ++k) force[k] += both * bond.xi[k];
+    squares += volume * bond.length * bond.length;
+  }
+  return squares;
+}
+
 int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
 {
   Error *error = reader->error;
@@ -106,6 +135,8 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
     if (make_rows(d, &d->regions[r], error)) return BRECCIA_FAILURE;
   share(d);
   s->known = !d->begins_under_stress; /* else laws are led to their stress first */
+  for (int64_t n = 0; n < d->particles->count; ++n)
+    s->whole = fmax(s->whole, squares_of_bonds(d, d->particles->place_of[n], (double[3]){0}));
   return BRECCIA_OK;
 }
 
@@ -208,6 +239,82 @@ void domain_book_strains(Domain *d)
 double domain_strain_work(const Domain *d)
 {
   return d->strains.work + forces_given(&d->forces);
+}
+
+/* ---- forces ---- */
+
+/** Forces elastically, at displacements and strains as they stand, by a factor. */
+static int add_elastic_forces(Domain *d, double factor, double *const *force, Error *error)
+{
+  const Particles *p = d->particles;
+  domain_evaluate(d);
+  if (!isfinite(d->force_sum)) {
+    const char *stuck = forces_stuck(&d->forces, NULL);
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "quasi-static: the period by which loads should grow is not known, as %s%s%s no equilibrium with "
+                     "the strains of "
+                     "loads at once; give a 'period'",
+                     stuck ? "bar '" : "the body", stuck ? stuck : "", stuck ? "' finds" : " finds");
+  }
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) force[k][i] += factor * p->internal[k][i];
+  return BRECCIA_OK;
+}
+
+int domain_add_grown_strains(Domain *d, double time, double *const *force, Error *error)
+{
+  Strains *s = &d->strains;
+  const LoadStrains now = of_loads(d);
+  const size_t of_places = sizeof(double) * (size_t)now.places, of_bars = sizeof(double) * (size_t)now.bar_count;
+  if (!s->loading || !s->any) return BRECCIA_OK;
+  double *places = now.of_places ? memory_zeroed((size_t)now.places, sizeof(double), "free strains", error) : NULL,
+         *bars = now.of_bars ? memory_zeroed((size_t)now.bar_count, sizeof(double), "free strains", error) : NULL;
+  int status = (now.of_places && !places) || (now.of_bars && !bars) ? BRECCIA_FAILURE : BRECCIA_OK;
+  if (!status) {
+    if (places) memcpy(places, now.of_places, of_places);
+    if (bars) memcpy(bars, now.of_bars, of_bars);
+    const bool elastic = domain_in_elastic_stage(d);
+    domain_set_elastic_stage(d, true);
+    status = add_elastic_forces(d, -1, force, error);
+    loading_grown_strains(s->loading, &now, time);
+    if (s->given) share(d);
+    if (!status) status = add_elastic_forces(d, 1, force, error);
+    domain_set_elastic_stage(d, elastic);
+    if (places) memcpy(now.of_places, places, of_places);
+    if (bars) memcpy(now.of_bars, bars, of_bars);
+    if (s->given) share(d);
+  }
+  free(places);
+  free(bars);
+  return status;
+}
+
+static void add_forces_of_batch(void *context, int64_t b)
+{
+  Domain *d = context;
+  d->batch_sum[b] = 0;
+  for (int64_t i = d->batches[b].first * SLICE; i < d->batches[b].last * SLICE; ++i) {
+    double force[3] = {0};
+    if (!(d->counted[i] > 0)) continue;
+    squares_of_bonds(d, i, force);
+    d->batch_sum[b] += d->counted[i] * sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  }
+}
+
+/** By the slope of the stress against them, as whole families see it (of linear stresses exactly): nothing within a body that shrinks evenly, and at its faces
+ *  that stress. */
+static double forces_of_free_strains(Domain *d)
+{
+  double sum = 0;
+  team_each(d->batch_count, add_forces_of_batch, d);
+  for (int64_t b = 0; b < d->batch_count; ++b) sum += d->batch_sum[b];
+  return d->strains.whole > 0 ? sum * d->body.dimensions / d->strains.whole : 0;
+}
+
+double domain_forces_of_strains(Domain *d)
+{
+  const Bars *bars = bars_among(&d->forces);
+  return (d->strains.given ? forces_of_free_strains(d) : 0) + (bars ? bars_prestress_forces(bars) : 0);
 }
 
 /* ---- state ---- */

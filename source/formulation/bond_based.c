@@ -312,6 +312,7 @@ const FormulationType formulation_bond_based = {
     .stress = stress,
     .characteristic_length = bond_characteristic_length,
     .critical_stretch = bond_critical_stretch,
+    .shown_young = bond_shown_young,
     .describe = bond_describe,
     .former_bonds = former_bonds,
     .bytes = bytes,

@@ -118,6 +118,7 @@ double bond_continuum_constant(const BondBased *b, double young);
 double bond_calibration(const BondBased *b, int block, Calibration calibration);
 
 /** As FormulationType describes them. */
+double bond_shown_young(const void *formulation, int block, int axis);
 double bond_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 double bond_characteristic_length(const BondLength *of);
 double bond_critical_stretch(const BondLength *of, const Material *material, double energy);

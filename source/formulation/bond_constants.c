@@ -151,6 +151,15 @@ double bond_critical_stretch(const BondLength *of, const Material *material, dou
   return sqrt(2 * energy / (material_young(material) * bond_characteristic_length(of)));
 }
 
+double bond_shown_young(const void *formulation, int block, int axis)
+{
+  const BondBased *b = formulation;
+  const double along[3] = {axis == 0, axis == 1, axis == 2};
+  if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block)) return NAN;
+  return b->stiffness[block] * lattice_young(b, block, along) /
+         (material_young(bond_material(b, block)) * continuum_young(b));
+}
+
 /** Says which moduli a lattice shows whose axes are not alike: along each, and the least and largest over all directions. */
 static void describe_directions(const BondBased *b, int block, double unit, Text *text)
 {

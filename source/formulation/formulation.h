@@ -257,6 +257,9 @@ struct FormulationType {
   const char *(*flutters)(const void *formulation);
   /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */
   bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
+  /** Young's modulus that the lattice of a block shows along one of its axes, over that of its material; NaN: it resists nothing there, or fills none.
+   *  NULL: they are the same. */
+  double (*shown_young)(const void *formulation, int block, int axis);
   /** Adds what a user should know before a run, as one line, in `units`; NULL: nothing. */
   void (*describe)(const void *formulation, const Units *units, Text *text);
   /** Arrays over places, of force states and what else each evaluation writes before it reads it: strains and stresses of the state evaluated

@@ -222,6 +222,10 @@ void loading_apply_untied(const Loading *loading, Particles *particles, double t
 bool loading_strain(Loading *loading, const LoadStrains *strains, double time);
 /** They were put elsewhere meanwhile, and are put again the next time. */
 void loading_forget_strains(Loading *loading);
+/** Factor of a load at a time of the run; of one that begins with the stage under way as large as its history makes it first. */
+double loading_grown_factor(const Loading *loading, const Load *load, double time);
+/** Puts strains by these factors; loading_strain does not know of it. */
+void loading_grown_strains(const Loading *loading, const LoadStrains *strains, double time);
 /** Whether a load of a deck is an initial strain of particles. */
 bool load_strains_places(const LoadSpec *load);
 extern const LoadType initial_strain_load;

@@ -292,6 +292,12 @@ static double strain_factor(const Loading *loading, const Load *load, double tim
   return load_acts(loading, load) ? load_factor(load, time) : 0;
 }
 
+static void clear_strains(const LoadStrains *strains)
+{
+  if (strains->of_places) memset(strains->of_places, 0, sizeof(double) * (size_t)strains->places);
+  if (strains->of_bars) memset(strains->of_bars, 0, sizeof(double) * (size_t)strains->bar_count);
+}
+
 bool loading_strain(Loading *loading, const LoadStrains *strains, double time)
 {
   bool same = true;
@@ -299,8 +305,7 @@ bool loading_strain(Loading *loading, const LoadStrains *strains, double time)
     if (loading->loads[l].type->strain)
       same &= loading->loads[l].applied == strain_factor(loading, &loading->loads[l], time);
   if (same) return false;
-  if (strains->of_places) memset(strains->of_places, 0, sizeof(double) * (size_t)strains->places);
-  if (strains->of_bars) memset(strains->of_bars, 0, sizeof(double) * (size_t)strains->bar_count);
+  clear_strains(strains);
   for (int l = 0; l < loading->count; ++l) {
     Load *load = &loading->loads[l];
     if (!load->type->strain) continue;
@@ -308,6 +313,22 @@ bool loading_strain(Loading *loading, const LoadStrains *strains, double time)
     if (load->applied != 0) load->type->strain(load, strains, load->applied);
   }
   return true;
+}
+
+double loading_grown_factor(const Loading *loading, const Load *load, double time)
+{
+  if (load->first < loading->stage) return load_factor(load, time);
+  return history_factor(&load->history, load->type->goes_on ? 0 : history_rise(&load->history));
+}
+
+void loading_grown_strains(const Loading *loading, const LoadStrains *strains, double time)
+{
+  clear_strains(strains);
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->strain && load_acts(loading, load))
+      load->type->strain(load, strains, loading_grown_factor(loading, load, time));
+  }
 }
 
 void loading_forget_strains(Loading *loading)

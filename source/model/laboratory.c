@@ -222,8 +222,8 @@ int breccia_test_draw(const breccia_test *test, const char *path, breccia_error 
     return error_add(error, BRECCIA_USER_ERROR, "%s: there is no curve to draw", test->where);
   const Host host = host_enter();
   const MeasuredPoints *points = &test->points;
-  const PlotLine lines[2] = {{test->fit.count ? "fitted" : "computed", c->x, c->y, c->count, false, 0, 0},
-                             {"measured", points->x, points->y, points->count, true, 0, 0}};
+  const PlotLine lines[2] = {{test->fit.count ? "fitted" : "computed", c->x, c->y, c->count, false, 0, 0, NULL},
+                             {"measured", points->x, points->y, points->count, true, 0, 0, NULL}};
   const PlotOptions plot = {.title = test->title,
                             .x = {.words = test->deck.test.x_label, .unit = ""},
                             .y = {.words = test->deck.test.y_label, .unit = test->unit},

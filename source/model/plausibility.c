@@ -445,6 +445,35 @@ static void check_cracks(breccia_model *model)
   }
 }
 
+/** Beams along an axis of their lattice stretch and bend by its modulus there, which the usual calibration of bonds does not make exact. */
+static void check_slender(breccia_model *model, const Region *region)
+{
+  const double slender = 3, most = 0.05;
+  const Body *body = &model->domain.body;
+  const Node *given = region->keys ? section_node(region->keys, "calibration") : NULL;
+  const bool meant = given && given != ((const SectionHead *)region->keys)->node;
+  const Extent e = extent_of(model);
+  if (!region->type->shown_young || body->dimensions < 2 || meant) return;
+  int axis = 0;
+  double next = 0;
+  for (int k = 1; k < body->dimensions; ++k)
+    if (e.size[k] > e.size[axis]) axis = k;
+  for (int k = 0; k < body->dimensions; ++k)
+    if (k != axis) next = fmax(next, e.size[k]);
+  if (e.largest < slender * next) return;
+  for (int block = 0; block < body->block_count; ++block) {
+    const double shown = region->type->shown_young(region->formulation, block, axis);
+    if (!(fabs(shown - 1) > most) || body->lattices[block].type->turns < body->dimensions) continue;
+    plausibility_say(model, region->node,
+                     "calibration: block '%s' is part of a body that is slender along %c, where its bonds show %.3f of "
+                     "Young's modulus: a beam stretches and bends by %.0f %% too %s; 'calibration: uniaxial' makes the "
+                     "axes exact, and 'calibration: uniform-expansion' says that it is meant so",
+                     body->blocks[block]->head.name, "xyz"[axis], shown, 100 * fabs(1 / shown - 1),
+                     shown < 1 ? "much" : "little");
+    return;
+  }
+}
+
 void plausibility_warn(breccia_model *model)
 {
   check_cracks(model);
@@ -452,9 +481,11 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_contact(model);
   plausibility_warn_of_supports(model);
   plausibility_warn_of_bars(model);
+  plausibility_warn_of_places(model);
   plausibility_warn_of_pictures(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   for (int r = 0; r < model->domain.region_count; ++r) check_locking(model, &model->domain.regions[r]);
+  for (int r = 0; r < model->domain.region_count; ++r) check_slender(model, &model->domain.regions[r]);
   plausibility_warn_of_loads(model);
   plausibility_warn_of_ground(model);
   plausibility_warn_of_damping(model);

@@ -6,22 +6,112 @@
 #include <stdlib.h>
 #include <string.h>
 
+/** Volume of all lines of a bar of the deck. */
+static double volume_of(const Bars *b, int deck_bar)
+{
+  double sum = 0;
+  for (int64_t e = b->first[b->lines.first[deck_bar]]; e < b->first[b->lines.first[deck_bar + 1]]; ++e)
+    sum += b->area[e] * b->length[e];
+  return sum;
+}
+
+static double volume_of_body(const breccia_model *model)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < model->domain.particles->places; ++i) sum += model->domain.counted[i];
+  return sum;
+}
+
+static const char *size_key(const BarSpec *bar)
+{
+  return isnan(bar->area) ? "diameter" : "area";
+}
+
 static void check_amount(breccia_model *model, const Bars *b)
 {
   const double most = 0.1; /* of the body's volume; reinforced concrete has 0.002 to 0.04 */
-  double steel = 0, body = 0;
-  int largest = 0;
-  for (int64_t e = 0; e < b->count; ++e) steel += b->area[e] * b->length[e];
-  for (int64_t i = 0; i < model->domain.particles->places; ++i) body += model->domain.counted[i];
-  for (int n = 1; n < b->specs->count; ++n)
-    if (b->bar_area[n] > b->bar_area[largest]) largest = n;
+  double steel = 0, largest = 0;
+  int of = 0;
+  for (int n = 0; n < b->lines.deck->count; ++n) {
+    const double volume = volume_of(b, n);
+    steel += volume;
+    if (volume > largest) of = n;
+    largest = fmax(largest, volume);
+  }
+  const double body = volume_of_body(model);
   if (!(steel > most * body)) return;
-  const BarSpec *bar = b->specs->items[largest];
-  const char *const key = isnan(bar->area) ? "diameter" : "area";
+  const BarSpec *bar = b->lines.deck->items[of];
+  const char *const key = size_key(bar);
+  plausibility_say(
+      model, section_node(bar, key),
+      "%s: bars take %.3g of the volume of the body, and reinforced concrete has 0.002 to 0.04; most of it "
+      "is bar '%s': look at the units%s%s",
+      key, steel / body, bar->head.name, bar->number > 1 ? ", and at 'number'" : "",
+      bar->repeat.count ? ", and at the 'pitch'" : "");
+}
+
+/** One bar, of all parallel ones on a line. In the deck's units. */
+static double area_of_one(const Bars *b, int deck_bar)
+{
+  const BarSpec *bar = b->lines.deck->items[deck_bar];
+  return b->bar_area[b->lines.first[deck_bar]] / (double)bar->number;
+}
+
+/** Wires thinner than half a millimetre, and thinner than two where all lines of the bar are next to nothing in the body. */
+static void check_thinness(breccia_model *model, const Bars *b, int deck_bar)
+{
+  const double finest = 0.2e-6, thin = 3e-6, least = 1e-5; /* m2, m2, of the body's volume */
+  const BarSpec *bar = b->lines.deck->items[deck_bar];
+  const double area = plausibility_in_si(model, "area", area_of_one(b, deck_bar)),
+               share = volume_of(b, deck_bar) / volume_of_body(model);
+  if (area >= finest && (area >= thin || share >= least)) return;
+  const char *const key = size_key(bar);
   plausibility_say(model, section_node(bar, key),
-                   "%s: bars take %.3g of the volume of the body, and reinforced concrete has 0.002 to 0.04; look at "
-                   "the units%s",
-                   key, steel / body, bar->number > 1 ? ", and at 'number'" : "");
+                   "%s: bar '%s' is %.2g mm2 thick and takes %.2g of the volume of the body, and reinforcement has 20 "
+                   "mm2 to 3000 mm2 a bar and 0.002 to 0.04 of a body; look at its unit",
+                   key, bar->head.name, 1e6 * area, share);
+}
+
+/** Lines that lie within one particle, as in metres where the body is in millimetres. */
+static void check_length(breccia_model *model, const Bars *b, int deck_bar)
+{
+  const Body *body = &model->domain.body;
+  const BarSpec *bar = b->lines.deck->items[deck_bar];
+  const int line = b->lines.first[deck_bar];
+  double length = 0, middle[3];
+  char unit[64];
+  for (int64_t e = b->first[line]; e < b->first[line + 1]; ++e) length += b->length[e];
+  bar_middle(b, b->first[line], middle);
+  const double spacing = body->lattices[body->particles.block[body_nearest(body, middle) / SLICE]].spacing;
+  if (!(length < spacing)) return;
+  units_name(model->units, dimension_find("length"), unit, sizeof unit);
+  plausibility_say(model, section_node(bar, "points"),
+                   "points: bar '%s' is %.3g %s long, %.2g of the spacing, so that it pulls on few particles and joins "
+                   "nothing; look at the unit of its points",
+                   bar->head.name, length, unit, length / spacing);
+}
+
+/** Lines that lie in each other, and a pitch that leaves none but those at both ends. */
+static void check_pitch(breccia_model *model, const Bars *b, int deck_bar)
+{
+  const BarSpec *bar = b->lines.deck->items[deck_bar];
+  const double thick = sqrt(4 / acos(-1) * area_of_one(b, deck_bar));
+  char unit[64];
+  units_name(model->units, dimension_find("length"), unit, sizeof unit);
+  for (int k = 0; k < bar->repeat.count; ++k) {
+    const RepeatSpec *r = bar->repeat.items[k];
+    if (r->pitch < thick)
+      plausibility_say(model, section_node(r, "pitch"),
+                       "pitch: lines of bar '%s' follow each other at %.3g %s, and are %.3g %s thick, so that they lie "
+                       "in each other; look at the units",
+                       bar->head.name, r->pitch, unit, thick, unit);
+    else if (r->pitch > r->over)
+      plausibility_say(
+          model, section_node(r, "pitch"),
+          "pitch: %.3g %s is more than the %.3g %s over which there are lines, so that bar '%s' has one at "
+          "each end and none between; look at the units",
+          r->pitch, unit, r->over, unit, bar->head.name);
+  }
 }
 
 /** Whether a place stands in the outermost row before layers outside a face. */
@@ -126,7 +216,7 @@ static void check_yields(breccia_model *model, const Bars *b)
   }
 }
 
-/** Tendons that yield before the body resists. */
+/** Tendons that yield before the body resists, and those that are pressed. */
 static void check_prestress(breccia_model *model, const Bars *b, const Load *load)
 {
   if (!plausibility_is_kind(load->spec, "prestress")) return;
@@ -137,9 +227,18 @@ static void check_prestress(breccia_model *model, const Bars *b, const Load *loa
     const Material *m = material_of(model, bar);
     const double stress = material_young(m) * strain[b->lines.first[n]],
                  yield = plausibility_parameter(model, m, "yield stress");
-    if (!(fabs(stress) > yield)) continue;
+    const double peak = history_peak(&load->history, model->solver.clock.end_time - load->begin);
     Text words = {0}, most = {0};
     quantity_describe(plausibility_in_si(model, "stress", stress), "Pa", &words);
+    if (!(fabs(stress) > yield)) {
+      if (stress * peak < 0)
+        plausibility_say(model, load->node,
+                         "prestress: bar '%s' is pressed, by %s at first, and pulls the body apart; tension is "
+                         "positive",
+                         bar->head.name, text_words(&words));
+      text_free(&words);
+      continue;
+    }
     quantity_describe(plausibility_in_si(model, "stress", yield), "Pa", &most);
     plausibility_say(
         model, load->node,
@@ -160,6 +259,9 @@ void plausibility_warn_of_bars(breccia_model *model)
   check_yields(model, b);
   for (int l = 0; l < model->loading.count; ++l) check_prestress(model, b, &model->loading.loads[l]);
   for (int n = 0; n < b->lines.deck->count; ++n) {
+    check_thinness(model, b, n);
+    check_length(model, b, n);
+    check_pitch(model, b, n);
     check_faces(model, b, n);
     check_bond(model, ((const BarSpec *)b->lines.deck->items[n])->bond);
   }

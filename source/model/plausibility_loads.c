@@ -133,6 +133,30 @@ static void check_growth(breccia_model *model, const Load *load)
                    h->value_node->key, history_factor(h, time), largest, time, unit, grown, unit);
 }
 
+/** Whether a load takes the place of one of its name that acted in the stage before. */
+static bool goes_on_by_name(const breccia_model *model, const Load *load)
+{
+  for (int k = 0; k < model->loading.count; ++k)
+    if (load->first > 0 && model->loading.loads[k].behind == load->first && load->spec->name &&
+        model->loading.loads[k].spec->name && !strcmp(model->loading.loads[k].spec->name, load->spec->name))
+      return true;
+  return false;
+}
+
+/** Strains that a body in motion begins from at once: nobody means the waves and the swinging of tendons that are let go in no time, or of shrinkage. */
+static void check_sudden_strain(breccia_model *model, const Load *load)
+{
+  const Solver *s = &model->solver;
+  const bool grows = !isnan(solver_stage_steady(s, load->first)) && !load->spec->history; /* by 'quasi-static' */
+  if (!load->type->strain || solver_stage_rests(s, load->first) || grows || goes_on_by_name(model, load)) return;
+  if (load_magnitude(load->spec) * history_factor(&load->history, 0) == 0) return;
+  plausibility_say(model, load->node,
+                   "%s: it acts at once, so that the body swings, at first to about twice the way on which it comes to "
+                   "rest; let it grow over some periods, like 'history: {ramp to: ...}', or take 'quasi-static', or a "
+                   "stage of 'static'",
+                   load->node->key);
+}
+
 /** Implicit steps follow the waves that a jump of a force sets off, as errors of steps are measured by displacements that have not grown yet. */
 static void check_sudden(breccia_model *model, const Load *load)
 {
@@ -140,10 +164,7 @@ static void check_sudden(breccia_model *model, const Load *load)
   const LoadType *type = load->type;
   if (model_stage_error(model, load->first) > all || !type->force || type->brake || type->energy || type->goes_on)
     return;
-  for (int k = 0; k < model->loading.count; ++k) /* one that goes on under its name */
-    if (load->first > 0 && model->loading.loads[k].behind == load->first && load->spec->name &&
-        model->loading.loads[k].spec->name && !strcmp(model->loading.loads[k].spec->name, load->spec->name))
-      return;
+  if (goes_on_by_name(model, load)) return;
   if (load_magnitude(load->spec) * history_factor(&load->history, 0) == 0) return;
   if (load->first == 0 && model->spec->initial_stress.count) return; /* which it may balance from the beginning */
   plausibility_say(model, load->node,
@@ -206,6 +227,7 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_water(model, &model->loading.loads[k]);
     check_growth(model, &model->loading.loads[k]);
     check_sudden(model, &model->loading.loads[k]);
+    check_sudden_strain(model, &model->loading.loads[k]);
   }
   check_grips(model);
 }

@@ -1,5 +1,5 @@
 /* What the files of plausibility share: words and units (plausibility_words.c); loads and ground (plausibility_loads.c); blocks and contact
- * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
+ * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); points beside bodies (plausibility_places.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -52,6 +52,9 @@ void plausibility_warn_of_supports(breccia_model *model);
 
 /** Warns of bars whose size is not that of reinforcement, and where they meet a support. */
 void plausibility_warn_of_bars(breccia_model *model);
+
+/** Warns of points that lie beside what they are meant for. */
+void plausibility_warn_of_places(breccia_model *model);
 
 /** Warns of pictures that can show nothing of what is meant. */
 void plausibility_warn_of_pictures(breccia_model *model);

@@ -30,9 +30,18 @@ static char *in_pictures(const char *result, const char *name)
   return file;
 }
 
-static void tell(const breccia_plot *plot, const char *path)
+/** @param[in] replaced  it has taken the place of another file */
+static void tell(const breccia_plot *plot, const char *path, bool replaced)
 {
+  if (replaced && plot->replaces) plot->replaces(plot->context, path);
   if (plot->drawn) plot->drawn(plot->context, path);
+}
+
+/** Whether a file stands where a picture goes whose path was not given. */
+static bool is_in_place(const breccia_plot *plot, const char *path)
+{
+  struct stat status;
+  return !plot->path && path && !stat(path, &status);
 }
 
 void breccia_plot_begin(breccia_plot *plot, size_t size)
@@ -173,9 +182,10 @@ static int draw_states(const ResultView *view, const char *result, const breccia
   if (!status && !plot->each_range) status = picture_survey(view, 0, view->steps - 1, false, o, &survey, error);
   for (int k = first; k <= last && !status; ++k) {
     char *path = state_path(view, k, first < last, plot, result);
+    const bool replaces = is_in_place(plot, path);
     status = path ? picture_draw(view, k, o, plot->each_range ? NULL : &survey, path, error)
                   : error_add(error, BRECCIA_FAILURE, "out of memory: picture");
-    if (!status) tell(plot, path);
+    if (!status) tell(plot, path, replaces);
     free(path);
   }
   return status;
@@ -204,14 +214,17 @@ static int draw_over_length(const ResultView *view, const char *result, const br
                              .x_label = plot->x_label,
                              .y_label = plot->y_label,
                              .log_axes = plot->log_axes,
+                             .names = plot->of_bars,
+                             .name_count = plot->of_bar_count,
                              .steps = steps,
                              .count = count,
                              .low = plot->low,
                              .high = plot->high};
   char *path = status ? NULL : over_length_path(plot, result);
+  const bool replaces = is_in_place(plot, path);
   if (!status)
     status = path ? bar_curve_draw(view, &o, path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: picture");
-  if (!status) tell(plot, path);
+  if (!status) tell(plot, path, replaces);
   free(path);
   return status;
 }
@@ -234,7 +247,7 @@ static int draw_results(const char *result, const breccia_plot *plot, Kind kind,
     status = kind == MOVIE    ? movie_make(&view, &o, plot->each_range != 0, plot->rate, plot->path, error)
              : kind == STATES ? draw_states(&view, path, plot, &o, error)
                               : draw_over_length(&view, path, plot, error);
-    if (!status && kind == MOVIE) tell(plot, plot->path);
+    if (!status && kind == MOVIE) tell(plot, plot->path, false);
     result_view_close(&view);
   }
   free(path);
@@ -322,8 +335,9 @@ int breccia_plot_curve(const char *const *folders, int count, const breccia_plot
                           .log_axes = plot.log_axes,
                           .low = plot.low,
                           .high = plot.high};
+  const bool replaces = is_in_place(&plot, path);
   if (!status) status = curve_draw(folders, count, curve, &o, path, error);
-  if (!status) tell(&plot, path);
+  if (!status) tell(&plot, path, replaces);
   free(path);
   free(curve);
   return host_leave(&host, status, error);

@@ -1,9 +1,11 @@
 /* Names in a deck that say what is written and drawn: they are held against what there is. */
 #include "model/model.h"
 
+#include "bars/bars.h"
 #include "base/memory.h"
 #include "deck/spelling.h"
 #include "results/bar_columns.h"
+#include "results/bar_curve.h"
 #include "results/curve_names.h"
 #include "results/fields.h"
 #include "results/result_file.h"
@@ -57,13 +59,35 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
 }
 
 /** The deck has bars, and they have what they are to be coloured by. */
+/** A bar that is drawn is one of the deck, or a line of one. */
+static int check_bar_name(const breccia_model *model, const Bars *b, const PictureSpec *picture, const char *name)
+{
+  const SectionList *deck = b->lines.deck;
+  for (int n = 0; n < b->specs->count; ++n)
+    if (bar_curve_names(bar_name(b, n), name)) return BRECCIA_OK;
+  const char **words = memory_zeroed((size_t)deck->count, sizeof(char *), "pictures", model->reader.error);
+  if (!words) return BRECCIA_FAILURE;
+  for (int n = 0; n < deck->count; ++n) words[n] = deck_bar_name(b, n);
+  Text advice = {0};
+  spelling_advice(&advice, name, words, deck->count, "bars are");
+  const int status = node_error(model->document, section_node(picture, "of bars"), model->reader.error,
+                                "of bars: there is no bar '%s'; %s", name, text_words(&advice));
+  text_free(&advice);
+  free(words);
+  return status;
+}
+
 static int check_bars(const breccia_model *model, const PictureSpec *picture)
 {
   const Bars *b = bars_among(&model->domain.forces);
   const Node *node = section_node(picture, "bars");
   Error *error = model->reader.error;
+  const Node *given = node_get(model->document->root, "bars");
+  if (!b && given && given->count) return BRECCIA_USER_ERROR; /* they are wrong themselves */
   if (!b)
     return node_error(model->document, node, error, "bars: there are none to draw: the deck has no section 'bars'");
+  for (int k = 0; k < picture->of_bars.count; ++k)
+    if (check_bar_name(model, b, picture, picture->of_bars.items[k])) return BRECCIA_USER_ERROR;
   if (bar_column_is_there(bar_column_find(picture->bars), b)) return BRECCIA_OK;
   return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
                     picture->bars);

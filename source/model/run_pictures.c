@@ -95,6 +95,8 @@ static int draw_over_length(Run *run, const ResultView *view, const PictureSpec 
                              .x_label = spec->x_label,
                              .y_label = spec->y_label,
                              .log_axes = spec->log_axes,
+                             .names = spec->of_bars.items,
+                             .name_count = spec->of_bars.count,
                              .steps = steps,
                              .count = count,
                              .low = spec->range[0],

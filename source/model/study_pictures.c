@@ -72,7 +72,7 @@ static int draw_result(StudyReport *report, const StudyResult *result, const cha
     for (int v = 1; v < study->varied_count && !report->plan->together; ++v)
       text_add(&title, "%s%s %s", v > 1 ? ", " : "", study_key(study, v), study->varied[v].values[one->which[v]]);
     titles[count] = title.characters;
-    lines[count] = (PlotLine){titles[count] ? titles[count] : "", x + used, y + used, 0, false, count, 0};
+    lines[count] = (PlotLine){titles[count] ? titles[count] : "", x + used, y + used, 0, false, count, 0, NULL};
     for (int k = first; k < study->count; ++k) {
       const char *ignored;
       if (!same_line(study, one, &study->cases[k], report->plan->together)) continue;

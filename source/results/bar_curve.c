@@ -1,6 +1,8 @@
 #include "results/bar_curve.h"
 
 #include "base/memory.h"
+#include "base/text.h"
+#include "deck/spelling.h"
 #include "results/display_unit.h"
 #include "results/picture.h"
 #include "results/plot.h"
@@ -17,7 +19,7 @@ typedef struct Curves { /* of one picture */
   bool *taken;
   char unit[64], titles[MOST_LINES][TITLE];
   PlotLine lines[MOST_LINES];
-  int count, bar_count, chosen[MOST_BARS];
+  int count, asked, bar_count, chosen[MOST_BARS]; /* asked: bars among which those are chosen */
 } Curves;
 
 static int read_curves(Curves *c, const ResultView *view, const BarCurveOptions *o, Error *error)
@@ -66,13 +68,45 @@ static void add_bar(Curves *c, int number, const ResultView *view, const BarCurv
   }
 }
 
-/** Those with the largest values, but none that has hardly any beside others. */
+bool bar_curve_names(const char *line, const char *name)
+{
+  const size_t n = strlen(name);
+  if (strncmp(line, name, n) != 0) return false;
+  return !line[n] || (line[n] == ' ' && line[n + 1] && strspn(line + n + 1, "0123456789") == strlen(line + n + 1));
+}
+
+/** Leaves out bars that were not asked for. */
+static int ask(Curves *c, const BarCurveOptions *o, Error *error)
+{
+  c->asked = o->name_count ? 0 : c->bars.lines;
+  for (int n = 0; n < c->bars.lines && o->name_count; ++n) c->taken[n] = true;
+  for (int k = 0; k < o->name_count; ++k) {
+    bool exact = false, found = false;
+    for (int n = 0; n < c->bars.lines; ++n) exact |= !strcmp(c->bars.name[n], o->names[k]);
+    for (int n = 0; n < c->bars.lines; ++n) {
+      if (exact ? strcmp(c->bars.name[n], o->names[k]) != 0 : !bar_curve_names(c->bars.name[n], o->names[k])) continue;
+      found = true;
+      c->asked += c->taken[n];
+      c->taken[n] = false;
+    }
+    if (found) continue;
+    Text advice = {0};
+    spelling_advice(&advice, o->names[k], c->bars.name, c->bars.lines, "bars are");
+    const int status =
+        error_add(error, BRECCIA_USER_ERROR, "there is no bar '%s'; %s", o->names[k], text_words(&advice));
+    text_free(&advice);
+    return status;
+  }
+  return BRECCIA_OK;
+}
+
+/** Those with the largest values, but none that has hardly any beside others, unless it was asked for. */
 static void choose_bars(Curves *c, const ResultView *view, const BarCurveOptions *o)
 {
   const int most_bars = o->count == 1 ? MOST_BARS : MOST_DASHES;
   const int room = MOST_LINES / o->count < most_bars ? MOST_LINES / o->count : most_bars;
   double largest = 0;
-  while (c->bar_count < c->bars.lines && c->bar_count < room) {
+  while (c->bar_count < c->asked && c->bar_count < room) {
     int next = -1;
     double most = 0;
     for (int n = 0; n < c->bars.lines; ++n) {
@@ -82,7 +116,7 @@ static void choose_bars(Curves *c, const ResultView *view, const BarCurveOptions
       most = here;
     }
     if (!c->bar_count) largest = most;
-    if (c->bar_count && most <= 0.02 * largest) break;
+    if (c->bar_count && !o->name_count && most <= 0.02 * largest) break;
     c->taken[next] = true;
     c->chosen[c->bar_count++] = next;
   }
@@ -100,9 +134,8 @@ static void find_title(const Curves *c, const ResultView *view, const BarCurveOp
   }
   if (c->bar_count == 1)
     snprintf(title, size, "%s along bar '%.60s'%s", heading, c->bars.name[c->chosen[0]], at);
-  else if (c->bar_count < c->bars.lines)
-    snprintf(title, size, "%s along bars%s: %d of %d, those with the largest", heading, at, c->bar_count,
-             c->bars.lines);
+  else if (c->bar_count < c->asked)
+    snprintf(title, size, "%s along bars%s: %d of %d, those with the largest", heading, at, c->bar_count, c->asked);
   else
     snprintf(title, size, "%s along bars%s", heading, at);
 }
@@ -117,6 +150,7 @@ int bar_curve_draw(const ResultView *view, const BarCurveOptions *o, const char 
                                "curves over the length of bars are drawn at up to %d times, and these are %d; choose "
                                "some of them",
                                BAR_CURVE_TIMES, o->count);
+  if (!status) status = ask(c, o, error);
   if (!status) {
     char title[320];
     choose_bars(c, view, o);

@@ -3,6 +3,7 @@
 #include "base/csv.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "deck/document.h"
 #include "results/curve_names.h"
 #include "results/plot.h"
 #include <dirent.h>
@@ -59,9 +60,38 @@ static double *history_column(const char *folder, const CurveNames *names, int k
 
 typedef struct Columns { /* of one line: on rows of the same step */
   double *x, *y;
+  bool *apart; /* as in PlotLine */
   int count;
   char x_unit[64], y_unit[64];
 } Columns;
+
+static const char *words_of(const Node *map, const char *key)
+{
+  const Node *node = map && map->kind == NODE_MAP ? node_get(map, key) : NULL;
+  return node && node->kind == NODE_SCALAR ? node->text : "";
+}
+
+/** Finds where lengths jump, because displacements count from zero again in a stage, as the summary of the run tells it.
+ *  @param[in] step  of the points of a line */
+static void find_jumps(const char *folder, const double *step, Columns *line)
+{
+  char *path = text_format("%s/summary.json", folder), *text = path ? text_read_file(path, NULL) : NULL;
+  Document *document = text ? document_parse(text, strlen(text), path, NULL) : NULL;
+  const Node *root = document ? document->root : NULL,
+             *stages = root && root->kind == NODE_MAP ? node_get(root, "stages") : NULL;
+  const char *length = stages ? words_of(node_get(root, "units"), "positions and displacements") : "";
+  const bool moves = *length && (!strcmp(line->x_unit, length) || !strcmp(line->y_unit, length));
+  for (int k = 0; moves && stages->kind == NODE_LIST && k < stages->count; ++k) {
+    const Node *steps = stages->items[k].kind == NODE_MAP ? node_get(&stages->items[k], "steps") : NULL;
+    if (strcmp(words_of(&stages->items[k], "displacements_from_zero"), "true") != 0) continue;
+    if (!steps || steps->kind != NODE_LIST || !steps->count || steps->items[0].kind != NODE_SCALAR) continue;
+    const double end = strtod(steps->items[0].text, NULL); /* of the stage before, which has the row */
+    for (int i = 1; i < line->count; ++i) line->apart[i] |= step[i - 1] <= end && step[i] > end;
+  }
+  document_destroy(&document);
+  free(text);
+  free(path);
+}
 
 /** The k-th column of a curve over its first. */
 static int read_line(const char *folder, const CurveNames *names, int k, Columns *line, Error *error)
@@ -76,13 +106,18 @@ static int read_line(const char *folder, const CurveNames *names, int k, Columns
     else if (sx[i] > sy[j])
       ++j;
     else { /* never further than what was read of either */
+      sx[line->count] = sx[i];
       line->x[line->count] = line->x[i++];
       line->y[line->count++] = line->y[j++];
     }
   }
+  int status = line->y ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  if (!status && !(line->apart = memory_zeroed((size_t)line->count, sizeof(bool), "curves", error)))
+    status = BRECCIA_FAILURE;
+  if (!status) find_jumps(folder, sx, line);
   free(sx);
   free(sy);
-  return line->y ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  return status;
 }
 
 /** The last part of a path. */
@@ -200,7 +235,8 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
                                 line->count,
                                 false,
                                 columns_each > 1 ? c - 1 : k,
-                                columns_each > 1 ? k : 0}; /* dashes tell folders apart */
+                                columns_each > 1 ? k : 0, /* dashes tell folders apart */
+                                line->apart};
       const bool other_x = strcmp(line->x_unit, columns->x_unit) != 0;
       if (!status && (other_x || strcmp(line->y_unit, columns->y_unit)))
         status = error_add(error, BRECCIA_USER_ERROR,
@@ -218,7 +254,7 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
     if (ending && ending > name) *ending = 0;
     status = curve_points(o->overlay, &line->x, &line->y, &line->count, error);
     titles[count] = text_format("%s", name);
-    lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, true, 0, 0};
+    lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, true, 0, 0, NULL};
     ++count;
   }
   if (!status) {
@@ -239,6 +275,7 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
   for (int k = 0; columns && titles && k < most; ++k) {
     free(columns[k].x);
     free(columns[k].y);
+    free(columns[k].apart);
     free(titles[k]);
   }
   free(titles);

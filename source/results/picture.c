@@ -148,6 +148,7 @@ void scene_colour(const Scene *scene, double value, double rgb[3])
 
 /* ---- where particles are seen ---- */
 
+/** Plates are seen from the front, and beams of whatever length from their long side, so that their depth shows. */
 static void look(Scene *scene, const ResultView *view, const PictureOptions *o)
 {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -156,9 +157,9 @@ static void look(Scene *scene, const ResultView *view, const PictureOptions *o)
       low[k] = fmin(low[k], view->positions[3 * n + k]);
       high[k] = fmax(high[k], view->positions[3 * n + k]);
     }
-  double wide = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
-  const double degree = acos(-1) / 180;
-  bool thin = high[2] - low[2] + view->spacing < 0.2 * wide;
+  const double wide[2] = {high[0] - low[0], high[1] - low[1]}, thick = high[2] - low[2] + view->spacing,
+               degree = acos(-1) / 180, usual = wide[1] > 2 * wide[0] ? -30 : -60;
+  const bool thin = thick < 0.2 * fmax(wide[0], wide[1]) && thick < 0.25 * (fmin(wide[0], wide[1]) + view->spacing);
   scene->flat = view->plane || (thin && isnan(o->azimuth));
   if (scene->flat) {
     const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -167,7 +168,7 @@ static void look(Scene *scene, const ResultView *view, const PictureOptions *o)
     memcpy(scene->eye, axes[2], sizeof axes[2]);
     return;
   }
-  double a = (isnan(o->azimuth) ? -60 : o->azimuth) * degree, e = (isnan(o->elevation) ? 25 : o->elevation) * degree;
+  double a = (isnan(o->azimuth) ? usual : o->azimuth) * degree, e = (isnan(o->elevation) ? 25 : o->elevation) * degree;
   const double eye[3] = {cos(e) * cos(a), cos(e) * sin(a), sin(e)}, right[3] = {-sin(a), cos(a), 0};
   for (int k = 0; k < 3; ++k) {
     scene->eye[k] = eye[k];

@@ -10,6 +10,7 @@ typedef struct PictureSpec {
   SectionHead head;
   const char *field, *component, *curve, *bars, *title, *x_label, *y_label, *name, *log_axes;
   NumberList times;
+  TextList of_bars;
   double deformed, view[3], range[3]; /* view: azimuth and elevation; range: lowest and highest value */
   Shape *inside;                      /* or NULL: the whole body */
   bool broken_bonds, same_range, energy, over_length;

@@ -47,6 +47,12 @@ static const Field picture_fields[] = {
      .standard = "no",
      .meaning = "with 'bars': curves over the length of bars instead, at up to six times; of many bars those with the "
                 "largest values"},
+    {.key = "of bars",
+     .kind = FIELD_TEXTS,
+     .offset = offsetof(PictureSpec, of_bars),
+     .standard = "",
+     .meaning = "with 'over length': names of the bars that are drawn, of which one that is repeated stands for all of "
+                "its lines ('stirrups 3' for one); all bars when absent"},
     {.key = "component",
      .kind = FIELD_TEXT,
      .offset = offsetof(PictureSpec, component),
@@ -71,8 +77,8 @@ static const Field picture_fields[] = {
      .dimension = "angle",
      .standard = "",
      .meaning =
-         "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above; flat bodies are "
-         "seen from the front"},
+         "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above, and [-30, 25] of "
+         "bodies that are longest along y; plates whose thickness lies along z are seen from the front"},
     {.key = "inside",
      .kind = FIELD_SECTION,
      .offset = offsetof(PictureSpec, inside),
@@ -133,10 +139,15 @@ enum { OF_FIELD = 1, OF_BARS = 2, OF_LENGTH = 4, OF_HISTORIES = 8 };
 static const struct {
   const char *key;
   int kinds;
-} uses[] = {{"over length", OF_LENGTH | OF_BARS},   {"component", OF_FIELD},
-            {"at", OF_FIELD | OF_BARS | OF_LENGTH}, {"deformed", OF_FIELD | OF_BARS},
-            {"view", OF_FIELD | OF_BARS},           {"inside", OF_FIELD | OF_BARS},
-            {"same range", OF_FIELD | OF_BARS},     {"broken bonds", OF_FIELD | OF_BARS},
+} uses[] = {{"over length", OF_LENGTH | OF_BARS},
+            {"of bars", OF_LENGTH},
+            {"component", OF_FIELD},
+            {"at", OF_FIELD | OF_BARS | OF_LENGTH},
+            {"deformed", OF_FIELD | OF_BARS},
+            {"view", OF_FIELD | OF_BARS},
+            {"inside", OF_FIELD | OF_BARS},
+            {"same range", OF_FIELD | OF_BARS},
+            {"broken bonds", OF_FIELD | OF_BARS},
             {"log axes", OF_LENGTH | OF_HISTORIES}};
 
 static void refuse_useless_keys(const DeckReader *reader, const PictureSpec *p)

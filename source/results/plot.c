@@ -197,9 +197,11 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
   const DisplayUnit ux = display_unit(o->x.unit, larger_end(ex)), uy = display_unit(o->y.unit, larger_end(ey));
   for (int k = 0; k < count; ++k) {
     text_add(&script, "$data%d << END\n", k);
-    for (int i = 0; i < lines[k].count; ++i)
+    for (int i = 0; i < lines[k].count; ++i) {
+      if (lines[k].apart && lines[k].apart[i]) text_add(&script, "\n");
       if (isfinite(lines[k].x[i]) && isfinite(lines[k].y[i]))
         text_add(&script, "%.9g %.9g\n", ux.factor * lines[k].x[i], uy.factor * lines[k].y[i]);
+    }
     text_add(&script, "END\n");
   }
   const char *terminal = !dot || !strcmp(dot, ".png") ? "pngcairo size 800,520 font \"sans,12\""

@@ -9,8 +9,9 @@ typedef struct PlotLine {
   const char *title;
   const double *x, *y; /* [count]; what is not finite is left out */
   int count;
-  bool points;      /* instead of a line: measured */
-  int colour, dash; /* from 0 */
+  bool points;       /* instead of a line: measured */
+  int colour, dash;  /* from 0 */
+  const bool *apart; /* [count] whether no line leads to a point from the one before; NULL: one leads to each */
 } PlotLine;
 
 typedef struct PlotAxis {

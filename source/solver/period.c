@@ -23,7 +23,7 @@ static bool begins(const Loading *loading, const Load *load)
 }
 
 /** Forces that nothing balances once the loads of the stage have grown, with the particles where they are. */
-static void find_pull(const Search *s)
+static void find_pull(const Search *s, double time)
 {
   const Loading *loading = s->linear.loading;
   Particles *p = s->domain->particles;
@@ -34,13 +34,23 @@ static void find_pull(const Search *s)
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if (!load->type->force || !load_acts(loading, load)) continue;
-    const double time = begins(loading, load) ? history_rise(&load->history) : 0;
-    load->type->force(load, p, history_factor(&load->history, time));
+    load->type->force(load, p, loading_grown_factor(loading, load, time));
   }
   for (int k = 0; k < p->motions; ++k) {
     for (int64_t i = 0; i < p->places; ++i) s->force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
     memcpy(p->external[k], s->mass[k], sizeof(double) * (size_t)p->places);
   }
+}
+
+/** Adds what strains of loads that begin with the stage exert. */
+static int add_pull_of_strains(const Search *s, double time, Error *error)
+{
+  const Particles *p = s->domain->particles;
+  vectors_clear(s->mass, p);
+  const int status = domain_add_grown_strains(s->domain, time, s->mass, error);
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->force[k][i] += p->volume[i] * s->mass[k][i];
+  return status;
 }
 
 /** Adds forces by which the body answers where prescribed displacements have come to their full size and all else is held. */
@@ -120,9 +130,10 @@ static int iterate(Search *s, double *square, Error *error)
 static int judge(double square, double least, double *period, Error *error)
 {
   if (isnan(square))
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "quasi-static: no load or prescribed displacement that begins with this stage sets the body off, "
-                     "so that the period by which it should grow is not known; give a 'period'");
+    return error_add(
+        error, BRECCIA_USER_ERROR,
+        "quasi-static: no load, prescribed displacement or strain that begins with this stage sets the body off, "
+        "so that the period by which it should grow is not known; give a 'period'");
   if (square < -least)
     return error_add(error, BRECCIA_FAILURE,
                      "quasi-static: the body gives way by itself: a motion has a negative stiffness");
@@ -134,7 +145,7 @@ static int judge(double square, double least, double *period, Error *error)
   return BRECCIA_OK;
 }
 
-int period_find(Domain *d, const Loading *loading, double *period, Error *error)
+int period_find(Domain *d, const Loading *loading, double time, double *period, Error *error)
 {
   const double shift = modes_shift(d), nothing = 1e-7;
   const Particles *p = d->particles;
@@ -148,7 +159,10 @@ int period_find(Domain *d, const Loading *loading, double *period, Error *error)
                    : BRECCIA_FAILURE;
   if (!status) {
     domain_evaluate(d);
-    find_pull(&s);
+    find_pull(&s, time);
+    status = add_pull_of_strains(&s, time, error);
+  }
+  if (!status) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
     status = domain_linearise(d, error);

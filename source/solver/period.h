@@ -5,8 +5,8 @@
 #include "solver/linear_solver.h"
 
 /** Of the body as the stage under way holds it, elastic and with its present bonds, at the displacements held; of loads and prescribed displacements those
- *  that begin with the stage, as large as their histories make them first.
+ *  that begin with the stage, as large as their histories make them first. `time` of the run when it begins.
  *  @return BRECCIA_USER_ERROR where there is none: nothing loads the body, or nothing holds it against its loads */
-int period_find(Domain *domain, const Loading *loading, double *period, Error *error);
+int period_find(Domain *domain, const Loading *loading, double time, double *period, Error *error);
 
 #endif

@@ -10,7 +10,7 @@ static const Field quasi_static_fields[] = {
      .standard = "2",
      .range = "(0, 1e6]",
      .meaning = "periods over which loads grow from 0, along a straight line, that begin with the stage and have no "
-                "'history' of their own; prescribed displacements too"},
+                "'history' of their own; prescribed displacements and strains too"},
     {.key = "hold",
      .kind = FIELD_NUMBER,
      .offset = offsetof(QuasiStaticSpec, hold),

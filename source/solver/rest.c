@@ -72,7 +72,8 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   if (s->type->rests) { /* the measure by which it has converged */
     unbalanced = sqrt(squares);
     acting = sqrt(fmax(held_squares, external_squares));
-  }
+  } else
+    acting += domain_forces_of_strains(s->domain);
   if (s->type->exerted) acting = fmax(acting, s->type->exerted(s)); /* nothing acts on what was unloaded, or is torn */
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
   rest->kinetic =

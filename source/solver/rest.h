@@ -8,7 +8,7 @@ typedef struct Rest {
   bool meant;   /* there is damping, and no load or motion changes any more */
   bool reached; /* both shares are below `rest_limit` */
   double
-      unbalanced; /* forces that nothing balances, over those that act: sums of both; at rest the roots of squares by which that converges */
+      unbalanced; /* forces that nothing balances, over those that act, strains of loads too: sums of both; at rest the roots of squares by which that converges */
   double kinetic; /* kinetic energy, over the most that loads and motions have put in */
 } Rest;
 

@@ -198,7 +198,7 @@ static int find_period(Solver *run, Error *error)
       return node_error(run->reader->document, spec->head.node, error,
                         "quasi-static: the period cannot be found where a law runs in a server; give a 'period'");
     Error *reason = breccia_error_create();
-    status = period_find(run->domain, run->loading, &s->period, reason);
+    status = period_find(run->domain, run->loading, run->clock.time, &s->period, reason);
     if (status == BRECCIA_USER_ERROR)
       node_error(run->reader->document, spec->head.node, error, "%s", breccia_error_text(reason));
     else if (status)

@@ -454,6 +454,10 @@ pulled 'bars: [x]' "bars: there is no bar 'x'; expected names of those under 'ba
 pulled 'bars: []' "bars: name those that are under tension, as under 'bars' of the deck"
 pulled 'bars: [r, r]' "bars: 'r' stands here twice; leave one out"
 
+# what bars are named for says nothing more where these are wrong themselves
+refuse "$steel; s/^failure: .*/&\nbars: {r: {$along, diameter: 16 mm, material: steal}}/; s/^  - {name: pull.*/&\n  - {prestress: {bars: [r], stress: 100 MPa}}/; s/^  - {field: damage}/&\n  - {bars: stress}/; s/^watch:/&\n  bar: {bar: r}/" \
+  17:89 "there is no material 'steal'; did you mean 'steel'?"
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do
   printf '%s' "$content" > "$work/deck.yaml"

@@ -102,7 +102,7 @@ for near in 0.1:0 0.45:20 0.55:20 0.8:40 1:40; do
   cmp -s time.png step.png || fail "--time ${near%:*} of the run is not step ${near#*:}"
   checks=$((checks + 1))
 done
-"$breccia" plot other --energy > out 2>&1 || fail "energy: $(cat out)"
+"$breccia" plot other --energy > out 2> errors || fail "energy: $(cat errors)"
 equal "name of the energies" "$(cat out)" "other/pictures/ledger.png"
 # rows of histories that are written seldom belong to those of the same steps: over the same thing both axes have the same numbers
 cat > flat.yaml <<'Y'
@@ -213,6 +213,18 @@ done
 equal "names of plots of bars" "$(tr '\n' ' ' < out)" "steel/pictures/bars-strain-0s.png steel/pictures/bars-strain-0.5s.png steel/pictures/bars-strain-1s.png "
 "$breccia" plot steel --bars stress --over-length --output long.svg > out 2>&1 || fail "over length: $(cat out)"
 for word in "Stress along bars at 1 s: 6 of 8, those with the largest" ">along<" "[MPa]" "Along the bar [m]"; do contains "over length" "$(cat long.svg)" "$word"; done
+# of some bars, by their names or those of their lines; a name of the program's own does not take the place of another picture unsaid
+"$breccia" plot steel --bars stress --over-length --of-bars across --output long.svg > out 2>&1 || fail "over length of bars: $(cat out)"
+contains "over length of bars" "$(cat long.svg)" "Stress along bars at 1 s: 6 of 7, those with the largest"
+[ -z "$(grep '>along<' long.svg)" ] || fail "over length: a bar that was not asked for"
+"$breccia" plot steel --bars slip --over-length --of-bars "across 3,along" --output long.svg > out 2>&1 || fail "over length of bars: $(cat out)"
+for word in ">across 3<" ">along<" "Slip along bars at 1 s"; do contains "over length of two bars" "$(cat long.svg)" "$word"; done
+[ -z "$(grep 'across 2<\|those with' long.svg)" ] || fail "over length: a line that was not asked for"
+equal "nothing is said of a name that is given" "$(cat out)" long.svg
+"$breccia" plot steel --bars stress --over-length > out 2> errors || fail "over length: $(cat errors)"
+equal "a picture that takes the place of another: status and name" "$(cat out)" steel/pictures/bar-stress.png
+equal "a picture that takes the place of another" "$(cat errors)" "breccia plot: steel/pictures/bar-stress.png has taken the place of the picture that was there; --output names another file"
+checks=$((checks + 2))
 "$breccia" plot steel --bars slip --over-length --time 0,0.5,1 --output slip.svg > out 2>&1 || fail "slips: $(cat out)"
 for word in "Slip along bar 'along'" ">0.5 s<" ">1 s<" "Slip [µm]"; do contains "slips over length" "$(cat slip.svg)" "$word"; done
 sed 's/^pictures:/pictures: []/; /^  - {bars/d' steel.yaml > none.yaml
@@ -229,6 +241,9 @@ refused_bars() { # refused_bars WORDS PICTURE [EDIT]: a deck with this picture
 refused_bars "bars: 'stresses' is not known; did you mean 'stress'? (choose from strain, stress, force, dissipated, slip, bond stress)" "{bars: stresses}"
 refused_bars "bars: 'slip' is of bars with a 'bond', and none has one" "{bars: slip}" "s/, bond: {[^}]*}//"
 refused_bars "bars: there are none to draw: the deck has no section 'bars'" "{bars: stress}" "/^bars:/d; /^  along:/d; /^  across:/d; /^  steel:/d"
+refused_bars "of bars: there is no bar 'cross'; did you mean 'across'?" "{bars: stress, over length: yes, of bars: [along, cross]}"
+refused_bars "of bars: there is no bar 'across 8'" "{bars: stress, over length: yes, of bars: [across 8]}"
+refused_bars "of bars: a picture of bars has no use for it; leave it out" "{bars: stress, of bars: [along]}"
 # keys that a picture has no use for
 refused_bars "over length: a picture of a field has no use for it; leave it out" "{field: damage, over length: yes}"
 refused_bars "log axes: a picture of a field has no use for it; leave it out" "{field: damage, log axes: x}"
@@ -282,6 +297,8 @@ wrong "--log: a picture of a field has no use for it; leave it out" steel --log 
 wrong "--overlay: a picture of bars has no use for it; leave it out" steel --bars stress --overlay a.csv
 wrong "--rate: is of movies; leave it out, or give --movie" steel --rate 5
 wrong "--over-length needs --bars COLUMN" steel --over-length
+wrong "there is no bar 'cross'" steel --bars stress --over-length --of-bars along,cross
+wrong "expected names of bars with commas between them" steel --bars stress --over-length --of-bars ,
 wrong "'0,,1' should be numbers with commas between them" steel --bars stress --over-length --time 0,,1
 wrong "the run wrote states from the time 0 to 1 only" steel --bars stress --over-length --time 0,2
 wrong "are drawn at up to 6 times, and these are 7" steel --bars stress --over-length --time 0,0,0,0,0,0,0

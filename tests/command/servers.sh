@@ -167,7 +167,7 @@ materials:
   soft: {${4:-model: elastic-1d, Young modulus: 1e5}, density: 2}
   steel: {$1, density: 7}
 body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}
-peridynamics: {formulation: bond-based, horizon: 2.015 spacings}
+peridynamics: {formulation: bond-based, calibration: uniform-expansion, horizon: 2.015 spacings}
 bars:
   upper: {points: [[0.02, 0.14, 0.21], [1.18, 0.14, 0.21]], area: 1e-4, material: steel$2}
   lower: {points: [[0.02, 0.14, 0.11], [0.62, 0.14, 0.11]], area: 1e-4, material: steel$2}

@@ -153,7 +153,7 @@ lines "stages: summary" $s <<Y
   "deck": "staged.yaml",
   "settings": ["title=Two stages"],
   "variables": {"size": "2"},
-  "stages": [{"name": "slow", "steps": [0, 4], "times": [0, 1], "at_rest": true}, {"name": "fast", "steps": [4, 44], "times": [1, $end], "at_rest": false}],
+  "stages": [{"name": "slow", "steps": [0, 4], "times": [0, 1], "at_rest": true}, {"name": "fast", "steps": [4, 44], "times": [1, $end], "at_rest": false, "displacements_from_zero": true}],
   "first_broken_bond": null,
   "broken_bonds": 0,
 Y

@@ -477,6 +477,37 @@ static void thin_plates_are_seen_from_the_front(void **state)
   }
 }
 
+/** Beams, thinner along z than a fifth of their length too, are seen from their long side and a little from above, so that their depth shows; strips of
+ *  plates are plates. */
+static void beams_are_seen_from_their_side(void **state)
+{
+  (void)state;
+  static const struct {
+    int particles[3];
+    bool plate;
+  } bodies[] = {
+      {{40, 4, 6}, false}, {{4, 40, 6}, false}, {{40, 10, 4}, false}, {{40, 20, 4}, true}, {{20, 40, 4}, true}};
+  for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
+    const int *of = bodies[b].particles;
+    char into[40];
+    snprintf(into, sizeof into, "%s/beam%zu", folder, b);
+    breccia_model *model = model_of(
+        "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+        "body: {b: {material: m, spacing: 1, shape: {box: {particles: [%d, %d, %d]}}}}\n"
+        "solve: {explicit: {steps: 1, time step: 1e-3}}\nresults: {number: 1, fields: [damage]}\npictures: []\n",
+        of[0], of[1], of[2]);
+    ResultView view;
+    run_to_view(model, into, &view);
+    const PictureOptions o = {.field = "damage", .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+    PictureSurvey s;
+    assert_int_equal(picture_survey(&view, 0, 0, true, &o, &s, NULL), 0);
+    const bool front = fabs(s.x1 - s.x0 - of[0]) + fabs(s.y1 - s.y0 - of[1]) < 1e-6;
+    if (front != bodies[b].plate || (!front && !(s.x1 - s.x0 > 0.85 * 40 && s.y1 - s.y0 > 0.9 * of[2])))
+      fail_msg("body %d by %d by %d: a picture of %g by %g", of[0], of[1], of[2], s.x1 - s.x0, s.y1 - s.y0);
+    result_view_close(&view);
+  }
+}
+
 /** Bodies in the plane have no other side: whatever view is asked for they are seen from the front. */
 static void bodies_in_the_plane_are_seen_from_the_front(void **state)
 {
@@ -658,6 +689,7 @@ int main(void)
       cmocka_unit_test(bodies_that_turn_and_grow_have_no_gaps),
       cmocka_unit_test(bodies_in_space_stand_as_they_are_seen),
       cmocka_unit_test(thin_plates_are_seen_from_the_front),
+      cmocka_unit_test(beams_are_seen_from_their_side),
       cmocka_unit_test(bodies_in_the_plane_are_seen_from_the_front),
       cmocka_unit_test(pages_have_margins_on_all_sides),
       cmocka_unit_test(narrow_bodies_have_a_number_on_their_axis),

@@ -46,6 +46,8 @@ static void a_bar_has_the_period_of_its_wave(void **state)
       {"{on: {face: x-, layers: 1}, force: [-1, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]}", 2, 0},
       {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 3}, displacement: [1 mm, 0]}", 2, 5},
       {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {body force: [3, 0], on: {face: x-, layers: 80}}", 4, 2.5},
+      {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {initial strain: -1e-4}", 4, 2.5},
+      {"{initial strain: -1e-4}", 2, 0},
   };
   const double speed = sqrt(1e6 / 2);
   for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
@@ -161,6 +163,101 @@ static void a_later_stage_lets_its_own_loads_grow(void **state)
   assert_near(mean_motion(m, 1, 0) / first, 2, 0.01);
   assert_true(m->solver.records[1].steady == 1 && m->solver.records[0].steady == 0);
   breccia_model_destroy(&m);
+}
+
+/** Loads of an earlier stage stand as they have grown there, so that what balances them sets nothing off. */
+static void loads_of_an_earlier_stage_are_in_balance(void **state)
+{
+  (void)state;
+  const int columns = 24;
+  breccia_model *m = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 0.2, shape: {box: {particles: [%d, 8]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane stress}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [0, 1e-3], "
+      "history: {ramp to: 1}}]\n"
+      "solve: [{static: {increments: 1, end time: 1, residual: 1e-9}},"
+      " {loads: [{on: {face: x+, layers: 1}, force: [1e-3, 0]}], explicit: {quasi-static: {}}}]\n",
+      columns);
+  Error *error = breccia_error_create();
+  while (m->solver.clock.stage == 0) assert_int_equal(breccia_model_step(m, 1, error), 0);
+  breccia_error_destroy(&error);
+  const double wanted = 4 * (columns - 0.5) * 0.05 / sqrt(1e4 / 2);
+  assert_near(period_of(m), wanted, 0.05 * wanted);
+  breccia_model_destroy(&m);
+}
+
+#define BEAM                                                                                                           \
+  UNITS                                                                                                                \
+  "materials:\n  concrete: {%s, density: 2.4, Young modulus: 3e7}\n"                                                   \
+  "  steel: {model: elastic, density: 7.8, Young modulus: 2e8, Poisson ratio: 0.3}\n"                                  \
+  "body: {b: {material: concrete, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [30, "       \
+  "5]}}}}\n"                                                                                                           \
+  "peridynamics: {space: plane stress, formulation: %s, horizon: 2.015 spacings}\n"                                    \
+  "bars: {tendon: {points: [[0, 0.25], [3, 0.25]], area: 1e-3, material: steel}}\n"
+
+/** Strains that a body begins from act in it as loads do: they grow, are waited for, and are what forces out of balance are compared with. Beside them
+ *  supports exert nothing. */
+static void strains_bring_a_body_to_rest_as_loads_do(void **state)
+{
+  (void)state;
+  static const char *const loads[] = {"prestress: {bars: [tendon], stress: 1e6}", "initial strain: -3e-4"};
+  static const char *const formulations[][2] = {{"ordinary", "model: elastic, Poisson ratio: 0.2"},
+                                                {"bond-based", "model: elastic-1d"},
+                                                {"correspondence", "model: elastic, Poisson ratio: 0.2"}};
+  for (int n = 0; n < 6; ++n) {
+    double shorter[3];
+    for (int way = 0; way < 3; ++way) {
+      static const char *const ways[] = {"static: {increments: 1, residual: 1e-7}", "explicit: {quasi-static: {}}",
+                                         "explicit: {end time: 0.05, rest: 1e-3, damping: {ratio: 1, at: 300 Hz}}"};
+      breccia_model *m =
+          model_of(BEAM "loads: [{on: {nearest: [0.05, 0.25]}, displacement: [0, 0]}, {on: {nearest: [0.15, 0.25]}, "
+                        "displacement: [free, 0]}, {%s%s}, {on: {face: x+, layers: 1}, force: [0, 0]}]\n"
+                        "solve: {%s}\npictures: []\n",
+                   formulations[n / 2][1], formulations[n / 2][0], loads[n % 2],
+                   way == 2 ? ", history: {ramp to: 4e-3}" : "", ways[way]);
+      assert_true(run(m));
+      shorter[way] = mean_motion(m, 3, 0);
+      const StageRecord *r = &m->solver.records[0];
+      if (way == 1 && r->steady != STEADY)
+        fail_msg("%s, %s: judged %g, %g out of balance, kinetic %g", formulations[n / 2][0], loads[n % 2], r->steady,
+                 r->unbalanced, r->kinetic);
+      if (way == 2) {
+        assert_true(r->came_to_rest > 0);
+        assert_true(m->solver.clock.time > 4e-3 && m->solver.clock.time < 0.04);
+      }
+      breccia_model_destroy(&m);
+    }
+    for (int way = 1; way < 3; ++way) assert_near(shorter[way], shorter[0], 0.01 * fabs(shorter[0]));
+  }
+}
+
+/** By what they are compared with: stress times area at both ends of a rod that shrinks, and the force of a tendon at both of its ends, and where it bends. */
+static void forces_of_strains_are_those_of_a_body_that_is_held(void **state)
+{
+  (void)state;
+  breccia_model *rod =
+      model_of(ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {initial strain: -1e-4}]\n"
+                   "solve: {static: {increments: 1}}\n");
+  assert_near(domain_forces_of_strains(&rod->domain), 0, 0);
+  step_surely(rod, 1);
+  assert_near(domain_forces_of_strains(&rod->domain), 2 * 1e6 * 1e-4 * 0.01, 1e-12);
+  breccia_model_destroy(&rod);
+  for (int bent = 0; bent < 2; ++bent) {
+    breccia_model *m = model_of(
+        UNITS "materials:\n  concrete: {model: elastic, density: 2.4, Young modulus: 3e7, Poisson ratio: 0.2}\n"
+              "  steel: {model: elastic, density: 7.8, Young modulus: 2e8, Poisson ratio: 0.3}\n"
+              "body: {b: {material: concrete, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: "
+              "[31, 21]}}}}\n"
+              "peridynamics: {space: plane stress, formulation: ordinary, horizon: 2.015 spacings}\n"
+              "bars: {tendon: {points: [[0, 1], [1, 1], [%g, %g]], area: 1e-3, material: steel}}\n"
+              "loads: [{on: {all: yes}, displacement: [0, 0]}, {prestress: {bars: [tendon], stress: 1e6}}]\n"
+              "solve: {static: {increments: 1}}\npictures: []\n",
+        bent ? 1.0 : 2.0, bent ? 2.0 : 1.0);
+    step_surely(m, 1);
+    assert_near(domain_forces_of_strains(&m->domain), 1e6 * 1e-3 * (bent ? 2 + sqrt(2) : 2), 1e-6);
+    breccia_model_destroy(&m);
+  }
 }
 
 static breccia_model *plate(double load, const char *solver)
@@ -383,6 +480,9 @@ int main(void)
       cmocka_unit_test(what_loads_do_not_set_off_does_not_count),
       cmocka_unit_test(a_steady_body_is_where_statics_find_it),
       cmocka_unit_test(loads_grow_along_a_straight_line),
+      cmocka_unit_test(loads_of_an_earlier_stage_are_in_balance),
+      cmocka_unit_test(strains_bring_a_body_to_rest_as_loads_do),
+      cmocka_unit_test(forces_of_strains_are_those_of_a_body_that_is_held),
       cmocka_unit_test(a_later_stage_lets_its_own_loads_grow),
       cmocka_unit_test(all_ways_find_one_failure_load),
       cmocka_unit_test(a_body_that_still_comes_to_rest_is_told_from_one_that_fails),

@@ -152,7 +152,7 @@ static void limits_are_where_they_say(void **state)
   }
 }
 
-#define PULLED(what) "loads: [{prestress: {bars: [low], " what "}}]\n"
+#define PULLED(what) "loads: [{prestress: {bars: [low], " what "}, history: {ramp to: 1e-12}}]\n"
 #define HELD_BY(law) ", bond: {" law "}"
 #define FIB_BY(stiffness) HELD_BY("compressive strength: 30 MPa, rib spacing: 8 mm, unloading stiffness: " stiffness)
 
@@ -183,11 +183,28 @@ static void bars_that_are_hardly_meant_are_told(void **state)
        "prestress: 501 MPa in bar 'low' is beyond the yield stress of its material 's', 500 MPa: it yields where the "
        "body resists"},
       {"500 MPa", "", PULLED("stress: -501 MPa"), "prestress: -501 MPa in bar 'low' is beyond"},
+      {"500 MPa", "", PULLED("stress: -499 MPa"),
+       "prestress: bar 'low' is pressed, by -499 MPa at first, and pulls the body apart; tension is positive"},
+      {"500 MPa", "", "loads: [{prestress: {bars: [low], stress: -9 MPa}, history: {table: [[0, 0], [1e-12, -1]]}}]\n",
+       NULL},
+      {"500 MPa", "", "loads: [{prestress: {bars: [low], stress: 9 MPa}, history: {table: [[0, 0], [1e-12, -1]]}}]\n",
+       "bar 'low' is pressed, by 9 MPa at first"},
+      {"500 MPa", "", "loads: [{prestress: {bars: [low], stress: 400 MPa}}]\n",
+       "prestress: it acts at once, so that the body swings"},
       {"500 MPa", "", PULLED("strain: 0.0024"), NULL},
       {"500 MPa", "", PULLED("strain: 0.0026"), "prestress: 520 MPa in bar 'low' is beyond"},
       /* of 4.8e-4 m3 of body, by bars of 3e-6 m3 each */
       {"500 MPa", ", number: 16", "", NULL},
-      {"500 MPa", ", number: 17", "", "look at the units, and at 'number'"},
+      {"500 MPa", ", number: 17", "", "most of it is bar 'low': look at the units, and at 'number'"},
+      {"500 MPa", ", number: 3, repeat: {along: [0, -1], pitch: 0.0114, number: 2}", "", NULL},
+      {"500 MPa", ", number: 9, repeat: {along: [0, -1], pitch: 0.0114, number: 2}", "",
+       "look at the units, and at 'number', and at the 'pitch'"},
+      {"500 MPa", ", repeat: {along: [0, -1], pitch: 0.0112, number: 2}", "",
+       "pitch: lines of bar 'low' follow each other at 0.0112 m, and are 0.0113 m thick, so that they lie in each "
+       "other"},
+      {"500 MPa", ", repeat: {along: [0, 1], pitch: 0.02, over: 0.02}", "", NULL},
+      {"500 MPa", ", repeat: {along: [0, 1], pitch: 20, over: 0.02}", "",
+       "pitch: 20 m is more than the 0.02 m over which there are lines, so that bar 'low' has one at each end"},
   };
   for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
     breccia_model *m = model_of(
@@ -203,6 +220,136 @@ static void bars_that_are_hardly_meant_are_told(void **state)
     if (bars[k].warning &&
         (!strstr(words, bars[k].warning) || strchr(words, '\n') || strncmp(words, "warning: deck:", 14)))
       fail_msg("%zu: expected '%s', found: %s", k, bars[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Bars of no thickness, and of no length, each beside another one that is usual; the body is 4.8e-4 m3. */
+static void bars_that_are_nearly_nothing_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *bar, *warning; /* NULL: there is none */
+  } bars[] = {
+      {"{points: [[0.02, 0.025], [0.05, 0.025]], area: 0.21 mm2, material: s}", NULL},
+      {"{points: [[0.02, 0.025], [0.05, 0.025]], area: 0.19 mm2, material: s}",
+       "area: bar 'fine' is 0.19 mm2 thick and takes 1.2e-05 of the volume of the body"},
+      {"{points: [[0.02, 0.025], [0.05, 0.025]], diameter: 0.012 mm, material: s}",
+       "diameter: bar 'fine' is 0.00011 mm2"},
+      {"{points: [[0.0245, 0.025], [0.035, 0.025]], area: 2.1e-7, number: 9, material: s}", NULL},
+      {"{points: [[0.0245, 0.025], [0.0344, 0.025]], area: 1e-4, material: s}",
+       "points: bar 'fine' is 0.0099 m long, 0.99 of the spacing, so that it pulls on few particles"},
+  };
+  for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {" USUAL "}, s: {model: steel-bilinear, density: 7.85, Young modulus: 200 GPa, yield stress: "
+        "500 MPa}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+        "bars: {low: {points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: s}, fine: %s}\n",
+        bars[k].bar);
+    const char *words = breccia_model_warnings(m);
+    if (!bars[k].warning && *words) fail_msg("%zu: no warning was expected: %s", k, words);
+    if (bars[k].warning && (!strstr(words, bars[k].warning) || strchr(words, '\n')))
+      fail_msg("%zu: expected '%s', found: %s", k, bars[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+  /* thin wires count by what all of them are of a large body */
+  for (int few = 0; few < 2; ++few) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials: {m: {" USUAL "}, s: {model: elastic-1d, density: 7.85, "
+        "Young modulus: 200 GPa}}\n"
+        "body: {b: {material: m, spacing: 1, shape: {box: {particles: [8, 6, 3]}}}}\nsolve: {explicit: {steps: 1}}\n"
+        "bars: {wire: {points: [[1, 2, 1], [5, 2, 1]], area: 2.9 mm2, number: %d, material: s}}\n",
+        few ? 1 : 200);
+    const char *words = breccia_model_warnings(m);
+    if ((strstr(words, "area: bar 'wire' is 2.9 mm2 thick") != NULL) != few) fail_msg("%d: %s", few, words);
+    breccia_model_destroy(&m);
+  }
+  /* of two bars the one that most of the steel is in, whichever is thicker */
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {" USUAL "}, s: {model: elastic-1d, density: 7.85, "
+      "Young modulus: 200 GPa}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: {particles: [8, 6]}}}}\n"
+      "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+      "bars: {thick: {points: [[0.02, 0.025], [0.04, 0.025]], area: 3e-4, material: s},\n"
+      " many: {points: [[0.02, 0.005], [0.02, 0.055]], area: 2e-5, material: s, repeat: {along: [1, 0], pitch: 5.1e-3, "
+      "number: 10}, number: 6}}\n");
+  assert_non_null(strstr(breccia_model_warnings(m), "area: bars take"));
+  assert_non_null(strstr(breccia_model_warnings(m), "most of it is bar 'many': look at the units"));
+  assert_non_null(strstr(breccia_model_warnings(m), "deck:7:"));
+  breccia_model_destroy(&m);
+}
+
+/** Points of histories and loads, on a body from 0 to 0.08 and 0.06 m whose spacing is 0.01 m. */
+static void points_beside_the_body_are_told(void **state)
+{
+  (void)state;
+#define WATCHES(what) "watch: {w: {" what "}}\n"
+#define PIN "{on: {nearest: [0.005, 0.005]}, displacement: [0, 0]}"
+  static const struct {
+    const char *more, *warning; /* NULL: there is none */
+  } points[] = {
+      {WATCHES("displacement of: {nearest: [0.0949, 0.025]}"), NULL},
+      {WATCHES("displacement of: {nearest: [0.0951, 0.025]}"),
+       "nearest: [0.0951, 0.025] is 0.0201 m from the nearest particle, which is at [0.075, 0.025]: 2.01 spacings"},
+      {"selections: {far: {nearest: [-2.998, 0.025]}}\n" WATCHES("velocity of: far"), ": 300 spacings"},
+      {WATCHES("stress and strain of: {nearest: [40, 30]}"), "nearest: [40, 30] is 49.9 m from the nearest particle"},
+      {WATCHES("opening between: [[0.005, 0.005], [80, 0.005]]"),
+       "opening between: [80, 0.005] is 79.9 m from the nearest particle"},
+      {WATCHES("bar: low, at: [0.039, 0.04]"), NULL},
+      {WATCHES("bar: low, at: [0.039, 0.046]"),
+       "at: [0.039, 0.046] is 0.0214 m from the nearest element of the bar, which is at [0.035, 0.025]"},
+      {"loads: [{on: {nearest: [0.005, 5.002]}, force: [0, 1e-6]}]\n", "nearest: [0.005, 5.002] is 4.95 m"},
+      {"loads: [" PIN ", {on: {nearest: [0.005, 0.005]}, force: [0, 1e-6]}]\n", NULL},
+      {"loads: [" PIN ", {on: {nearest: [0.006, 0.005]}, force: [0, 1e-6]}]\n",
+       "nearest: the particle at [0.005, 0.005] is also the nearest to the point of the load in line 7, 0.001 m from "
+       "this one"},
+      {"loads: [" PIN ", {on: {nearest: [0.011, 0.005]}, force: [0, 1e-6]}]\n", NULL},
+  };
+  for (size_t k = 0; k < sizeof points / sizeof *points; ++k) {
+    char more[500];
+    snprintf(more, sizeof more, "bars: {low: {points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: m}}\n%s",
+             points[k].more);
+    breccia_model *m = body_of("m", USUAL, more);
+    const char *words = breccia_model_warnings(m);
+    if (!points[k].warning && *words) fail_msg("%zu: no warning was expected: %s", k, words);
+    if (points[k].warning && (!strstr(words, points[k].warning) || strchr(words, '\n')))
+      fail_msg("%zu: expected '%s', found: %s", k, points[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Slender bodies along an axis whose modulus the calibration does not make exact. */
+static void beams_of_the_wrong_modulus_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *particles, *keys, *warning; /* NULL: there is none */
+  } beams[] = {
+      {"[13, 4, 3]", "",
+       "calibration: block 'b' is part of a body that is slender along x, where its bonds show 0.890 of "
+       "Young's modulus: a beam stretches and bends by 12 % too much; 'calibration: uniaxial' makes"},
+      {"[4, 3, 13]", "", "slender along z"},
+      {"[11, 4, 3]", "", NULL},
+      {"[13, 4, 3]", ", calibration: uniaxial", NULL},
+      {"[13, 4, 3]", ", calibration: uniform-expansion", NULL},
+      {"[13, 4]", "", NULL}, /* 1.023 in the plane */
+      {"[13, 4, 3]", ", horizon: 2.015 spacings", "slender along x"},
+  };
+  for (size_t k = 0; k < sizeof beams / sizeof *beams; ++k) {
+    const bool plane = !strchr(strchr(beams[k].particles, ',') + 1, ',');
+    breccia_model *m = model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {model: elastic-1d, density: "
+                                "2.4, Young modulus: 30 GPa}}\n"
+                                "body: {b: {material: m, %s, spacing: 0.01, shape: {box: {particles: %s}}}}\n"
+                                "peridynamics: {formulation: bond-based%s%s}\nsolve: {explicit: {steps: 1}}\n",
+                                plane ? "lattice: square, thickness: 0.1" : "lattice: cubic", beams[k].particles,
+                                plane ? ", space: plane stress" : "", beams[k].keys);
+    const char *words = breccia_model_warnings(m);
+    if (!beams[k].warning && *words) fail_msg("%zu: no warning was expected: %s", k, words);
+    if (beams[k].warning && (!strstr(words, beams[k].warning) || strchr(words, '\n')))
+      fail_msg("%zu: expected '%s', found: %s", k, beams[k].warning, words);
     breccia_model_destroy(&m);
   }
 }
@@ -252,6 +399,20 @@ static void loads_that_are_hardly_meant_are_told(void **state)
        "force: it acts at once"},
       {"solve: {implicit: {end time: 0.1}}\n", "{on: {face: x-}, spring: {stiffness: 1}}", NULL},
       {"solve: {explicit: {end time: 1e-4}}\n", PUSH(""), NULL},
+      /* strains at once in motion */
+      {"solve: {explicit: {end time: 1e-4}}\n", "{initial strain: -3e-4}",
+       "initial strain: it acts at once, so that the body swings, at first to about twice the way on which it comes to "
+       "rest; let it grow over some periods"},
+      {"solve: {implicit: {end time: 0.1}}\n", "{initial strain: -3e-4}", "initial strain: it acts at once"},
+      {"solve: {explicit: {end time: 1e-4}}\n", "{initial strain: -3e-4, history: {ramp to: 1e-4}}", NULL},
+      {"solve: {explicit: {quasi-static: {period: 1e-4}}}\n", "{initial strain: -3e-4}", NULL},
+      {"solve: {explicit: {quasi-static: {period: 1e-4}}}\n", "{initial strain: -3e-4, history: {constant: yes}}",
+       "it acts at once"},
+      {"solve: {static: {}}\n", "{initial strain: -3e-4}", NULL},
+      {"solve: [{static: {}}, {explicit: {end time: 1e-4}, loads: [{name: dry, initial strain: -3e-4}]}]\n",
+       "{name: dry, initial strain: -3e-4, history: {ramp to: 1}}", NULL},
+      {"solve: [{static: {}}, {explicit: {end time: 1e-4}, loads: [{name: dry, initial strain: -3e-4}]}]\n",
+       "{name: wet, initial strain: -1e-4, history: {ramp to: 1}}", "initial strain: it acts at once"},
       {"solve: [{static: {}}, {implicit: {end time: 0.1}}]\n", PUSH(""), NULL},
       {"solve: [{static: {}}, {implicit: {end time: 0.1}, loads: [" PUSH("") "]}]\n", "{gravity: [0, -9.81]}",
        "force: it acts at once"},
@@ -518,6 +679,9 @@ int main(void)
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
                                      cmocka_unit_test(bars_that_are_hardly_meant_are_told),
+                                     cmocka_unit_test(bars_that_are_nearly_nothing_are_told),
+                                     cmocka_unit_test(points_beside_the_body_are_told),
+                                     cmocka_unit_test(beams_of_the_wrong_modulus_are_told),
                                      cmocka_unit_test(ground_beyond_its_strength_is_told),
                                      cmocka_unit_test(points_between_particles_are_told),
                                      cmocka_unit_test(control_that_outlasts_yielding_is_told),

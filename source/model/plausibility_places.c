@@ -1,0 +1,106 @@
+/* Points of a deck that lie beside what they are meant for: a particle is the nearest one however far it is. */
+#include "model/plausibility_parts.h"
+
+#include "bars/bars.h"
+#include <math.h>
+#include <string.h>
+
+static const double far_away = 2; /* spacings; within a body no point is farther than 0.87 of one from a particle */
+
+static double apart(const double a[3], const double b[3])
+{
+  return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+static void add_point(const breccia_model *model, const double point[3], Text *text)
+{
+  for (int k = 0; k < model->domain.body.dimensions; ++k) text_add(text, "%s%.6g", k ? ", " : "[", point[k]);
+  text_add(text, "]");
+}
+
+/** @param[in] found, what  where the nearest thing of this name is */
+static void check_distance(breccia_model *model, const Node *node, const double point[3], const double found[3],
+                           const char *what)
+{
+  const Body *body = &model->domain.body;
+  const double away = apart(point, found),
+               spacing = body->lattices[body->particles.block[body_nearest(body, found) / SLICE]].spacing;
+  if (!(away > far_away * spacing)) return;
+  char length[64];
+  Text words[2] = {{0}, {0}};
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  add_point(model, point, &words[0]);
+  add_point(model, found, &words[1]);
+  plausibility_say(model, node,
+                   "%s: %s is %.3g %s from the nearest %s, which is at %s: %.3g spacings; look at its coordinates and "
+                   "their unit",
+                   node->key, text_words(&words[0]), away, length, what, text_words(&words[1]), away / spacing);
+  text_free(&words[0]);
+  text_free(&words[1]);
+}
+
+static void place_of(const breccia_model *model, int32_t place, double point[3])
+{
+  for (int k = 0; k < 3; ++k) point[k] = model->domain.particles->position[k][place];
+}
+
+static void check_point(breccia_model *model, const Node *node, const double point[3])
+{
+  double found[3];
+  place_of(model, body_nearest(&model->domain.body, point), found);
+  check_distance(model, node, point, found, "particle");
+}
+
+static void check_selection(breccia_model *model, const SelectionSpec *spec)
+{
+  if (spec && !isnan(spec->nearest[0])) check_point(model, section_node(spec, "nearest"), spec->nearest);
+}
+
+static void check_watch(breccia_model *model, const WatchSpec *watch)
+{
+  const Reference *const references[] = {&watch->displacement, &watch->velocity, &watch->force, &watch->reaction,
+                                         &watch->stress,       &watch->history,  &watch->damage};
+  for (size_t k = 0; k < sizeof references / sizeof *references; ++k) check_selection(model, references[k]->section);
+  for (int k = 0; k < watch->opening.count; ++k)
+    check_point(model, section_node(watch, "opening between"), watch->opening.values + 3 * k);
+  for (int k = 0; k < watch->bond.count; ++k)
+    check_point(model, section_node(watch, "bond between"), watch->bond.values + 3 * k);
+  const Bars *bars = bars_among(&model->domain.forces);
+  const int bar = watch->bar && bars ? bars_find(bars, watch->bar) : -1;
+  if (bar < 0 || isnan(watch->at[0])) return;
+  double middle[3];
+  bar_middle(bars, bar_nearest(bars, bar, watch->at), middle);
+  check_distance(model, section_node(watch, "at"), watch->at, middle, "element of the bar");
+}
+
+/** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
+static void check_pair(breccia_model *model, const Load *one, const Load *other)
+{
+  const SelectionSpec *a = selection_spec(&model->spec->selections, &one->spec->on),
+                      *b = selection_spec(&model->spec->selections, &other->spec->on);
+  if (!a || !b || isnan(a->nearest[0]) || isnan(b->nearest[0])) return;
+  if (one->selection.count != 1 || other->selection.count != 1) return;
+  if (one->selection.places[0] != other->selection.places[0] || apart(a->nearest, b->nearest) == 0) return;
+  double at[3];
+  char length[64];
+  Text words = {0};
+  place_of(model, one->selection.places[0], at);
+  add_point(model, at, &words);
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  plausibility_say(model, section_node(b, "nearest"),
+                   "nearest: the particle at %s is also the nearest to the point of the load in line %d, %.3g %s from "
+                   "this one; look at the coordinates and their unit",
+                   text_words(&words), one->spec->head.node->line, apart(a->nearest, b->nearest), length);
+  text_free(&words);
+}
+
+void plausibility_warn_of_places(breccia_model *model)
+{
+  const DeckSpec *deck = model->spec;
+  for (int k = 0; k < deck->selections.count; ++k) check_selection(model, deck->selections.items[k]);
+  for (int k = 0; k < model->loading.count; ++k) {
+    check_selection(model, model->loading.loads[k].spec->on.section);
+    for (int n = 0; n < k; ++n) check_pair(model, &model->loading.loads[n], &model->loading.loads[k]);
+  }
+  for (int k = 0; k < deck->watches.count; ++k) check_watch(model, deck->watches.items[k]);
+}
