@@ -211,8 +211,9 @@ void bars_accept(void *forces);
 double bars_energy(void *forces);
 double bars_dissipated(const void *forces);
 double bars_given(const void *forces);
-/** The sum of the sizes of forces that the strains by which bars are shorter than their places would exert at their nodes if these had not moved: at ends and bends. */
-double bars_prestress_forces(const Bars *bars);
+/** The sum of the sizes of forces that bars shorter than their places by these strains would exert at their nodes if these had not moved: at ends and bends.
+ *  @param[in] shorter  [bars] */
+double bars_prestress_forces(const Bars *bars, const double *shorter);
 const char *bars_unassembled(const void *forces);
 const char *bars_stuck(const void *forces);
 
