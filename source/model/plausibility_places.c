@@ -2,6 +2,9 @@
 #include "model/plausibility_parts.h"
 
 #include "bars/bars.h"
+#include "domain/initial_stress.h"
+#include "results/profile.h"
+#include "solver/static.h"
 #include <math.h>
 #include <string.h>
 
@@ -51,9 +54,28 @@ static void check_point(breccia_model *model, const Node *node, const double poi
   check_distance(model, node, point, found, "particle");
 }
 
+/** One given on the spot, and those that it is made of; NULL: it has a name, and is looked at where it is given. */
 static void check_selection(breccia_model *model, const SelectionSpec *spec)
 {
-  if (spec && !isnan(spec->nearest[0])) check_point(model, section_node(spec, "nearest"), spec->nearest);
+  if (!spec) return;
+  if (!isnan(spec->nearest[0])) check_point(model, section_node(spec, "nearest"), spec->nearest);
+  const ReferenceList *const lists[] = {&spec->any_of, &spec->all_of, &spec->except};
+  for (size_t n = 0; n < sizeof lists / sizeof *lists; ++n)
+    for (int k = 0; k < lists[n]->count; ++k) check_selection(model, lists[n]->items[k].section);
+}
+
+static void check_points(breccia_model *model, const void *section, const char *key, const NumberList *list)
+{
+  for (int k = 0; k < list->count; ++k) check_point(model, section_node(section, key), list->values + 3 * k);
+}
+
+static void check_control(breccia_model *model, const ControlSpec *control)
+{
+  if (!control) return;
+  check_points(model, control, "opening between", &control->opening);
+  check_selection(model, control->displacement.section);
+  check_selection(model, control->bond.section);
+  check_selection(model, control->path.section);
 }
 
 static void check_watch(breccia_model *model, const WatchSpec *watch)
@@ -61,10 +83,8 @@ static void check_watch(breccia_model *model, const WatchSpec *watch)
   const Reference *const references[] = {&watch->displacement, &watch->velocity, &watch->force, &watch->reaction,
                                          &watch->stress,       &watch->history,  &watch->damage};
   for (size_t k = 0; k < sizeof references / sizeof *references; ++k) check_selection(model, references[k]->section);
-  for (int k = 0; k < watch->opening.count; ++k)
-    check_point(model, section_node(watch, "opening between"), watch->opening.values + 3 * k);
-  for (int k = 0; k < watch->bond.count; ++k)
-    check_point(model, section_node(watch, "bond between"), watch->bond.values + 3 * k);
+  check_points(model, watch, "opening between", &watch->opening);
+  check_points(model, watch, "bond between", &watch->bond);
   const Bars *bars = bars_among(&model->domain.forces);
   const int bar = watch->bar && bars ? bars_find(bars, watch->bar) : -1;
   if (bar < 0 || isnan(watch->at[0])) return;
@@ -73,14 +93,34 @@ static void check_watch(breccia_model *model, const WatchSpec *watch)
   check_distance(model, section_node(watch, "at"), watch->at, middle, "element of the bar");
 }
 
+static const SelectionSpec *selection_of(const breccia_model *model, const Load *load)
+{
+  return selection_spec(&model->spec->selections, &load->spec->on);
+}
+
+static bool act_together(const Load *one, const Load *other)
+{
+  return one->first < other->behind && other->first < one->behind;
+}
+
+/** Whether two loads before this one have the same two selections. */
+static bool is_told(const breccia_model *model, const Load *before, const SelectionSpec *a, const SelectionSpec *b)
+{
+  for (const Load *other = model->loading.loads; other < before; ++other)
+    for (const Load *one = model->loading.loads; selection_of(model, other) == b && one < other; ++one)
+      if (selection_of(model, one) == a && act_together(one, other)) return true;
+  return false;
+}
+
 /** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
 static void check_pair(breccia_model *model, const Load *one, const Load *other)
 {
-  const SelectionSpec *a = selection_spec(&model->spec->selections, &one->spec->on),
-                      *b = selection_spec(&model->spec->selections, &other->spec->on);
+  const SelectionSpec *a = selection_of(model, one), *b = selection_of(model, other);
+  if (!act_together(one, other)) return;
   if (!a || !b || isnan(a->nearest[0]) || isnan(b->nearest[0])) return;
   if (one->selection.count != 1 || other->selection.count != 1) return;
   if (one->selection.places[0] != other->selection.places[0] || apart(a->nearest, b->nearest) == 0) return;
+  if (is_told(model, other, a, b) || is_told(model, other, b, a)) return;
   double at[3];
   char length[64];
   Text words = {0};
@@ -103,4 +143,14 @@ void plausibility_warn_of_places(breccia_model *model)
     for (int n = 0; n < k; ++n) check_pair(model, &model->loading.loads[n], &model->loading.loads[k]);
   }
   for (int k = 0; k < deck->watches.count; ++k) check_watch(model, deck->watches.items[k]);
+  for (int k = 0; k < deck->profiles.count; ++k)
+    check_selection(model, ((const ProfileSpec *)deck->profiles.items[k])->of.section);
+  for (int k = 0; k < deck->initial_stress.count; ++k)
+    check_selection(model, ((const InitialStressSpec *)deck->initial_stress.items[k])->on.section);
+  for (int k = 0; deck->failure && k < deck->failure->nowhere.count; ++k)
+    check_selection(model, ((const NoFailureSpec *)deck->failure->nowhere.items[k])->of.section);
+  for (int k = 0; k < deck->solve.count; ++k) {
+    const StaticSpec *rest = ((const SolveSpec *)deck->solve.items[k])->of[SOLVER_static];
+    if (rest) check_control(model, rest->control);
+  }
 }
