@@ -183,6 +183,8 @@ void bar_bending_state(Bars *bars, StateList *list);
 const Bars *bars_among(const Forces *forces);
 /** @return the number among those of the deck of the bar of a name, or -1 */
 int bars_find(const Bars *bars, const char *name);
+/** Whether a deck has bars that were refused, so that `bars` is NULL: why is among the errors already. */
+bool bars_were_refused(const Bars *bars, const DeckReader *reader);
 const char *bar_name(const Bars *bars, int bar);
 /** Name and lines of a bar of the deck. */
 const char *deck_bar_name(const Bars *bars, int deck_bar);
