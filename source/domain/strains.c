@@ -328,7 +328,8 @@ static double force_of_slope(const Slope *of, int64_t place)
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
-    const double both = of->domain->particles->volume[bond.neighbour] * (of->stress[place] + of->stress[bond.neighbour]);
+    const double both =
+        of->domain->particles->volume[bond.neighbour] * (of->stress[place] + of->stress[bond.neighbour]);
     for (int k = 0; k < 3; ++k) force[k] += both * bond.xi[k];
   }
   return of->domain->counted[place] * sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);

@@ -266,10 +266,11 @@ static void forces_of_strains_are_those_of_a_body_that_is_held(void **state)
     breccia_model_destroy(&m);
   }
   /* of a later stage: what goes on growing there, what begins with it, and what ends */
-  rod = model_of(ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {initial strain: -1e-4, history: {ramp to: 4}}, "
-                     "{name: warm, initial strain: 7e-4}]\n"
-                     "solve: [{static: {increments: 1}}, {static: {increments: 1}}, {static: {increments: 1}, without: [warm], "
-                     "loads: [{initial strain: 3e-4}]}]\n");
+  rod = model_of(
+      ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {initial strain: -1e-4, history: {ramp to: 4}}, "
+          "{name: warm, initial strain: 7e-4}]\n"
+          "solve: [{static: {increments: 1}}, {static: {increments: 1}}, {static: {increments: 1}, without: [warm], "
+          "loads: [{initial strain: 3e-4}]}]\n");
   const double of_one = 2 * 1e6 * 0.01, changed[3] = {7e-4 - 0.25e-4, 0.25e-4, 7e-4 - 3e-4 + 0.25e-4},
                stands[3] = {7e-4 - 0.25e-4, 7e-4 - 0.5e-4, 3e-4 - 0.75e-4};
   for (int stage = 0; stage < 3; ++stage) {
