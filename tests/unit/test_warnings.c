@@ -345,6 +345,14 @@ static void beams_of_the_wrong_modulus_are_told(void **state)
       {"[13, 4, 3]", ", calibration: uniform-expansion", NULL},
       {"[13, 4]", "", NULL}, /* 1.023 in the plane */
       {"[13, 4, 3]", ", horizon: 2.015 spacings", "slender along x"},
+      /* half of one beyond a plane of symmetry, and what stands between walls */
+      {"[7, 4, 3]", "}\nloads: [{on: {face: x-}, support: {held: across}}]\nselections: {all: {all: yes}",
+       "slender along x"},
+      {"[7, 4, 3]", "}\nloads: [{on: {face: x-}, displacement: [0, 0, 0]}]\nselections: {all: {all: yes}", NULL},
+      {"[13, 4, 3]",
+       "}\nloads: [{on: {face: y-}, displacement: [free, 0, free]}, {on: {face: y+}, displacement: [free, 0, free]}]\n"
+       "selections: {all: {all: yes}",
+       NULL},
   };
   for (size_t k = 0; k < sizeof beams / sizeof *beams; ++k) {
     const bool plane = !strchr(strchr(beams[k].particles, ',') + 1, ',');
