@@ -2,11 +2,12 @@
 #include "model/plausibility_parts.h"
 
 #include "bars/bars.h"
+#include "base/memory.h"
 #include "domain/initial_stress.h"
 #include "results/profile.h"
 #include "solver/static.h"
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 static const double far_away = 2; /* spacings; within a body no point is farther than 0.87 of one from a particle */
 
@@ -93,55 +94,71 @@ static void check_watch(breccia_model *model, const WatchSpec *watch)
   check_distance(model, section_node(watch, "at"), watch->at, middle, "element of the bar");
 }
 
-static const SelectionSpec *selection_of(const breccia_model *model, const Load *load)
-{
-  return selection_spec(&model->spec->selections, &load->spec->on);
-}
+/** A load on the particle nearest to a point. */
+typedef struct PointLoad {
+  const Load *load;
+  const SelectionSpec *on;
+} PointLoad;
 
 static bool act_together(const Load *one, const Load *other)
 {
   return one->first < other->behind && other->first < one->behind;
 }
 
-/** Whether two loads before this one have the same two selections. */
-static bool is_told(const breccia_model *model, const Load *before, const SelectionSpec *a, const SelectionSpec *b)
+/** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
+static bool is_pair(const PointLoad *one, const PointLoad *other)
 {
-  for (const Load *other = model->loading.loads; other < before; ++other)
-    for (const Load *one = model->loading.loads; selection_of(model, other) == b && one < other; ++one)
-      if (selection_of(model, one) == a && act_together(one, other)) return true;
+  return one->load->selection.places[0] == other->load->selection.places[0] && one->on != other->on &&
+         apart(one->on->nearest, other->on->nearest) != 0 && act_together(one->load, other->load);
+}
+
+/** Whether loads before the last one have the same two selections as the pair of it and another. */
+static bool is_told(const PointLoad *loads, const PointLoad *one, const PointLoad *last)
+{
+  for (const PointLoad *b = loads; b <= last; ++b)
+    for (const PointLoad *a = loads; a < b && (b < last || a < one); ++a)
+      if (((a->on == one->on && b->on == last->on) || (a->on == last->on && b->on == one->on)) && is_pair(a, b))
+        return true;
   return false;
 }
 
-/** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
-static void check_pair(breccia_model *model, const Load *one, const Load *other)
+static void say_pair(breccia_model *model, const PointLoad *one, const PointLoad *other)
 {
-  const SelectionSpec *a = selection_of(model, one), *b = selection_of(model, other);
-  if (!act_together(one, other)) return;
-  if (!a || !b || isnan(a->nearest[0]) || isnan(b->nearest[0])) return;
-  if (one->selection.count != 1 || other->selection.count != 1) return;
-  if (one->selection.places[0] != other->selection.places[0] || apart(a->nearest, b->nearest) == 0) return;
-  if (is_told(model, other, a, b) || is_told(model, other, b, a)) return;
   double at[3];
   char length[64];
   Text words = {0};
-  place_of(model, one->selection.places[0], at);
+  place_of(model, one->load->selection.places[0], at);
   add_point(model, at, &words);
   units_name(model->units, dimension_find("length"), length, sizeof length);
-  plausibility_say(model, section_node(b, "nearest"),
+  plausibility_say(model, section_node(other->on, "nearest"),
                    "nearest: the particle at %s is also the nearest to the point of the load in line %d, %.3g %s from "
                    "this one; look at the coordinates and their unit",
-                   text_words(&words), one->spec->head.node->line, apart(a->nearest, b->nearest), length);
+                   text_words(&words), one->load->spec->head.node->line, apart(one->on->nearest, other->on->nearest),
+                   length);
   text_free(&words);
+}
+
+static void check_pairs(breccia_model *model)
+{
+  PointLoad *loads = memory_zeroed((size_t)model->loading.count, sizeof *loads, "loads", NULL);
+  int count = 0;
+  for (int k = 0; loads && k < model->loading.count; ++k) {
+    const Load *load = &model->loading.loads[k];
+    const SelectionSpec *on = selection_spec(&model->spec->selections, &load->spec->on);
+    if (on && !isnan(on->nearest[0]) && load->selection.count == 1) loads[count++] = (PointLoad){load, on};
+  }
+  for (int k = 0; k < count; ++k)
+    for (int n = 0; n < k; ++n)
+      if (is_pair(&loads[n], &loads[k]) && !is_told(loads, &loads[n], &loads[k])) say_pair(model, &loads[n], &loads[k]);
+  free(loads);
 }
 
 void plausibility_warn_of_places(breccia_model *model)
 {
   const DeckSpec *deck = model->spec;
   for (int k = 0; k < deck->selections.count; ++k) check_selection(model, deck->selections.items[k]);
-  for (int k = 0; k < model->loading.count; ++k) {
-    check_selection(model, model->loading.loads[k].spec->on.section);
-    for (int n = 0; n < k; ++n) check_pair(model, &model->loading.loads[n], &model->loading.loads[k]);
-  }
+  for (int k = 0; k < model->loading.count; ++k) check_selection(model, model->loading.loads[k].spec->on.section);
+  check_pairs(model);
   for (int k = 0; k < deck->watches.count; ++k) check_watch(model, deck->watches.items[k]);
   for (int k = 0; k < deck->profiles.count; ++k)
     check_selection(model, ((const ProfileSpec *)deck->profiles.items[k])->of.section);
