@@ -231,11 +231,11 @@ double bars_given(const void *forces)
   return ((const Bars *)forces)->given;
 }
 
-double bars_prestress_forces(const Bars *b)
+double bars_prestress_forces(const Bars *b, const double *shorter)
 {
   double sum = 0;
   for (int n = 0; n < b->specs->count; ++n) {
-    const double pull = fabs(bar_young(b, n) * b->bar_area[n] * b->prestrain[n]);
+    const double pull = fabs(bar_young(b, n) * b->bar_area[n] * shorter[n]);
     for (int64_t e = b->first[n]; e <= b->first[n + 1] && pull > 0; ++e) {
       double square = 0;
       for (int k = 0; k < 3; ++k) {

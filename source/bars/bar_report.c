@@ -33,6 +33,12 @@ double bar_young(const Bars *b, int bar)
   return b->young[e] > 0 ? b->young[e] : material_young(points_material(&b->points, e));
 }
 
+bool bars_were_refused(const Bars *bars, const DeckReader *reader)
+{
+  const Node *given = node_get(reader->document->root, "bars");
+  return !bars && given && given->count;
+}
+
 int bars_find(const Bars *b, const char *name)
 {
   for (int n = 0; b && n < b->lines.deck->count; ++n)

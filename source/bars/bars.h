@@ -183,6 +183,8 @@ void bar_bending_state(Bars *bars, StateList *list);
 const Bars *bars_among(const Forces *forces);
 /** @return the number among those of the deck of the bar of a name, or -1 */
 int bars_find(const Bars *bars, const char *name);
+/** Whether a deck has bars that were refused, so that `bars` is NULL: why is among the errors already. */
+bool bars_were_refused(const Bars *bars, const DeckReader *reader);
 const char *bar_name(const Bars *bars, int bar);
 /** Name and lines of a bar of the deck. */
 const char *deck_bar_name(const Bars *bars, int deck_bar);
@@ -211,8 +213,9 @@ void bars_accept(void *forces);
 double bars_energy(void *forces);
 double bars_dissipated(const void *forces);
 double bars_given(const void *forces);
-/** The sum of the sizes of forces that the strains by which bars are shorter than their places would exert at their nodes if these had not moved: at ends and bends. */
-double bars_prestress_forces(const Bars *bars);
+/** The sum of the sizes of forces that bars shorter than their places by these strains would exert at their nodes if these had not moved: at ends and bends.
+ *  @param[in] shorter  [bars] */
+double bars_prestress_forces(const Bars *bars, const double *shorter);
 const char *bars_unassembled(const void *forces);
 const char *bars_stuck(const void *forces);
 

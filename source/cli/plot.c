@@ -143,7 +143,7 @@ static int read_names(const char *words, breccia_plot *plot)
   static const char *names[MOST_NAMES];
   char *rest = NULL;
   if (strlen(words) >= LONGEST) {
-    complain("breccia plot: --of-bars: expected less than %d characters", LONGEST);
+    complain("breccia plot: --of-bars: expected fewer than %d characters", LONGEST);
     return 1;
   }
   strcpy(own, words);
@@ -152,7 +152,7 @@ static int read_names(const char *words, breccia_plot *plot)
       complain("breccia plot: --of-bars: expected up to %d names", MOST_NAMES);
       return 1;
     }
-    names[plot->of_bar_count++] = name;
+    names[plot->of_bar_count++] = name + strspn(name, " ");
   }
   plot->of_bars = names;
   if (plot->of_bar_count) return 0;

@@ -281,8 +281,9 @@ double domain_strain_work(const Domain *domain);
 /** Adds to forces per volume what internal ones change by, with laws elastic and displacements as held, when strains of loads that begin with the stage under way
  *  have grown (loading_grown_factor). Strains are as before then, internal forces those of neither. By one thread; `time` of the run. */
 int domain_add_grown_strains(Domain *domain, double time, double *const *force, Error *error);
-/** The sum of the sizes of forces that free strains of the body and those of its bars would exert on its particles if these had not moved. */
-double domain_forces_of_strains(Domain *domain);
+/** The sum of the sizes of forces that strains of loads would exert on particles if these had not moved: by what strains have changed since the stage under way
+ *  began, at that time of the run; NaN: by all of them. */
+int domain_forces_of_strains(Domain *domain, double begin, double time, double *sum, Error *error);
 /** Strains of a state that has come back. */
 void domain_follow_strains(Domain *domain);
 void domain_strains_state(Domain *domain, StateList *list);

@@ -85,30 +85,16 @@ static LoadStrains of_loads(const Domain *d)
                        .bar_count = bars ? bars->specs->count : 0};
 }
 
-/** Stress, alike in all directions that the body has, that takes away a free strain. */
-static double stress_against(const Domain *d, int64_t place)
-{
-  const Material *m = &d->materials[d->material[place / SLICE]];
-  const double strain = d->strains.given[place];
-  if (d->body.dimensions == 1) return material_young(m) * strain;
-  if (domain_region(d, place)->points.plane_stress) return material_young(m) / (1 - material_poisson(m)) * strain;
-  return 3 * m->bulk * strain;
-}
-
-/** The sum of the squares of bond lengths of a place, by volume. @param[in,out] force  what bonds add to it by the stresses against strains at both ends */
-static double squares_of_bonds(const Domain *d, int64_t place, double force[3])
+/** The sum of the squares of bond lengths of a place, by volume. */
+static double squares_of_bonds(const Domain *d, int64_t place)
 {
   const Family *f = &d->family;
   const int64_t slice = place / SLICE;
-  const double own = stress_against(d, place);
   double squares = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
-    const double volume = d->particles->volume[bond.neighbour],
-                 both = volume * (own + stress_against(d, bond.neighbour));
-    for (int k = 0; k < 3; ++k) force[k] += both * bond.xi[k];
-    squares += volume * bond.length * bond.length;
+    squares += d->particles->volume[bond.neighbour] * bond.length * bond.length;
   }
   return squares;
 }
@@ -136,7 +122,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
   share(d);
   s->known = !d->begins_under_stress; /* else laws are led to their stress first */
   for (int64_t n = 0; n < d->particles->count; ++n)
-    s->whole = fmax(s->whole, squares_of_bonds(d, d->particles->place_of[n], (double[3]){0}));
+    s->whole = fmax(s->whole, squares_of_bonds(d, d->particles->place_of[n]));
   return BRECCIA_OK;
 }
 
@@ -250,71 +236,144 @@ static int add_elastic_forces(Domain *d, double factor, double *const *force, Er
   domain_evaluate(d);
   if (!isfinite(d->force_sum)) {
     const char *stuck = forces_stuck(&d->forces, NULL);
+    if (stuck)
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "quasi-static: the period by which loads should grow is not known, as bar '%s' finds no "
+                       "equilibrium under all of their strains at once; give a 'period'",
+                       stuck);
     return error_add(error, BRECCIA_USER_ERROR,
-                     "quasi-static: the period by which loads should grow is not known, as %s%s%s no equilibrium with "
-                     "the strains of "
-                     "loads at once; give a 'period'",
-                     stuck ? "bar '" : "the body", stuck ? stuck : "", stuck ? "' finds" : " finds");
+                     "quasi-static: the period by which loads should grow is not known, as forces are no numbers under "
+                     "all of their strains at once; give a 'period'");
   }
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) force[k][i] += factor * p->internal[k][i];
   return BRECCIA_OK;
 }
 
+/** Room for as many strains as loads put, zero; `free_strains_of` in any case. */
+static int make_strains(const Domain *d, LoadStrains *strains, Error *error)
+{
+  const LoadStrains put = of_loads(d);
+  *strains = (LoadStrains){.places = put.places, .bar_count = put.bar_count};
+  if (put.of_places) strains->of_places = memory_zeroed((size_t)put.places, sizeof(double), "free strains", error);
+  if (put.of_bars) strains->of_bars = memory_zeroed((size_t)put.bar_count, sizeof(double), "free strains", error);
+  return (put.of_places && !strains->of_places) || (put.of_bars && !strains->of_bars) ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+static void free_strains_of(LoadStrains *strains)
+{
+  free(strains->of_places);
+  free(strains->of_bars);
+}
+
+/** Copies strains; true if they were others. */
+static bool copy_strains(const LoadStrains *from, const LoadStrains *to)
+{
+  const size_t of_places = sizeof(double) * (size_t)to->places, of_bars = sizeof(double) * (size_t)to->bar_count;
+  const bool others = (to->of_places && memcmp(to->of_places, from->of_places, of_places) != 0) ||
+                      (to->of_bars && memcmp(to->of_bars, from->of_bars, of_bars) != 0);
+  if (to->of_places) memcpy(to->of_places, from->of_places, of_places);
+  if (to->of_bars) memcpy(to->of_bars, from->of_bars, of_bars);
+  return others;
+}
+
 int domain_add_grown_strains(Domain *d, double time, double *const *force, Error *error)
 {
   Strains *s = &d->strains;
-  const LoadStrains now = of_loads(d);
-  const size_t of_places = sizeof(double) * (size_t)now.places, of_bars = sizeof(double) * (size_t)now.bar_count;
+  const LoadStrains put = of_loads(d);
+  LoadStrains now = {0}, grown = {0};
   if (!s->loading || !s->any) return BRECCIA_OK;
-  double *places = now.of_places ? memory_zeroed((size_t)now.places, sizeof(double), "free strains", error) : NULL,
-         *bars = now.of_bars ? memory_zeroed((size_t)now.bar_count, sizeof(double), "free strains", error) : NULL;
-  int status = (now.of_places && !places) || (now.of_bars && !bars) ? BRECCIA_FAILURE : BRECCIA_OK;
+  int status = make_strains(d, &now, error);
+  if (!status) status = make_strains(d, &grown, error);
   if (!status) {
-    if (places) memcpy(places, now.of_places, of_places);
-    if (bars) memcpy(bars, now.of_bars, of_bars);
+    loading_grown_strains(s->loading, &grown, time);
+    copy_strains(&put, &now);
+  }
+  if (!status && copy_strains(&grown, &put)) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
-    status = add_elastic_forces(d, -1, force, error);
-    loading_grown_strains(s->loading, &now, time);
     if (s->given) share(d);
-    if (!status) status = add_elastic_forces(d, 1, force, error);
+    status = add_elastic_forces(d, 1, force, error);
+    copy_strains(&now, &put);
+    if (s->given) share(d);
+    if (!status) status = add_elastic_forces(d, -1, force, error);
     domain_set_elastic_stage(d, elastic);
-    if (places) memcpy(now.of_places, places, of_places);
-    if (bars) memcpy(now.of_bars, bars, of_bars);
-    if (s->given) share(d);
   }
-  free(places);
-  free(bars);
+  free_strains_of(&now);
+  free_strains_of(&grown);
   return status;
+}
+
+/** Stress, alike in all directions that the body has, that takes away a free strain. */
+static double stress_against(const Domain *d, int64_t place, double strain)
+{
+  const Material *m = &d->materials[d->material[place / SLICE]];
+  const Region *region = domain_region(d, place);
+  if (d->body.dimensions == 1) return material_young(m) * strain;
+  if (!region->points.plane_stress) return 3 * m->bulk * strain;
+  return material_young(m) / (1 - (region->type->components == 1 ? 1.0 / 3 : material_poisson(m))) * strain;
+}
+
+typedef struct Slope {
+  Domain *domain;
+  const double *stress; /* [places] */
+} Slope;
+
+/** Size of the force on a place. */
+static double force_of_slope(const Slope *of, int64_t place)
+{
+  const Family *f = &of->domain->family;
+  const int64_t slice = place / SLICE;
+  double force[3] = {0};
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+    const double both =
+        of->domain->particles->volume[bond.neighbour] * (of->stress[place] + of->stress[bond.neighbour]);
+    for (int k = 0; k < 3; ++k) force[k] += both * bond.xi[k];
+  }
+  return of->domain->counted[place] * sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
 }
 
 static void add_forces_of_batch(void *context, int64_t b)
 {
-  Domain *d = context;
+  const Slope *of = context;
+  Domain *d = of->domain;
   d->batch_sum[b] = 0;
-  for (int64_t i = d->batches[b].first * SLICE; i < d->batches[b].last * SLICE; ++i) {
-    double force[3] = {0};
-    if (!(d->counted[i] > 0)) continue;
-    squares_of_bonds(d, i, force);
-    d->batch_sum[b] += d->counted[i] * sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
-  }
+  for (int64_t i = d->batches[b].first * SLICE; i < d->batches[b].last * SLICE; ++i)
+    if (d->counted[i] > 0) d->batch_sum[b] += force_of_slope(of, i);
 }
 
-/** By the slope of the stress against them, as whole families see it (of linear stresses exactly): nothing within a body that shrinks evenly, and at its faces
- *  that stress. */
-static double forces_of_free_strains(Domain *d)
+/** By the slope of the stress against them, as whole families see it (of linear stresses exactly): nothing within an evenly shrinking body on a lattice, and at its
+ *  faces that stress. Within bodies whose particles stand anywhere neighbours do not quite balance each other, which adds up over the volume.
+ *  @param[in,out] strain  [places], that stress in the end */
+static double forces_of_free_strains(Domain *d, double *strain)
 {
   double sum = 0;
-  team_each(d->batch_count, add_forces_of_batch, d);
+  bool any = false;
+  for (int64_t i = 0; i < d->particles->places; ++i) {
+    any |= strain[i] != 0;
+    if (strain[i] != 0) strain[i] = stress_against(d, i, strain[i]);
+  }
+  if (!any || !(d->strains.whole > 0)) return 0;
+  team_each(d->batch_count, add_forces_of_batch, &(Slope){d, strain});
   for (int64_t b = 0; b < d->batch_count; ++b) sum += d->batch_sum[b];
-  return d->strains.whole > 0 ? sum * d->body.dimensions / d->strains.whole : 0;
+  return sum * d->body.dimensions / d->strains.whole;
 }
 
-double domain_forces_of_strains(Domain *d)
+int domain_forces_of_strains(Domain *d, double begin, double time, double *sum, Error *error)
 {
-  const Bars *bars = bars_among(&d->forces);
-  return (d->strains.given ? forces_of_free_strains(d) : 0) + (bars ? bars_prestress_forces(bars) : 0);
+  LoadStrains strains = {0};
+  *sum = 0;
+  if (!d->strains.loading || !d->strains.any) return BRECCIA_OK;
+  const int status = make_strains(d, &strains, error);
+  if (!status) {
+    loading_changed_strains(d->strains.loading, &strains, begin, time);
+    if (strains.of_places) *sum += forces_of_free_strains(d, strains.of_places);
+    if (strains.of_bars) *sum += bars_prestress_forces(bars_among(&d->forces), strains.of_bars);
+  }
+  free_strains_of(&strains);
+  return status;
 }
 
 /* ---- state ---- */

@@ -226,6 +226,8 @@ void loading_forget_strains(Loading *loading);
 double loading_grown_factor(const Loading *loading, const Load *load, double time);
 /** Puts strains by these factors; loading_strain does not know of it. */
 void loading_grown_strains(const Loading *loading, const LoadStrains *strains, double time);
+/** Puts what strains have changed by since the stage under way began, at that time of the run; NaN: all of them. loading_strain does not know of it. */
+void loading_changed_strains(const Loading *loading, const LoadStrains *strains, double begin, double time);
 /** Whether a load of a deck is an initial strain of particles. */
 bool load_strains_places(const LoadSpec *load);
 extern const LoadType initial_strain_load;

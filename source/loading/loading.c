@@ -331,6 +331,24 @@ void loading_grown_strains(const Loading *loading, const LoadStrains *strains, d
   }
 }
 
+/** Factor of the strains of a load when the stage under way began. */
+static double factor_before(const Loading *loading, const Load *load, double begin)
+{
+  return load->first < loading->stage && load->behind >= loading->stage ? load_factor(load, begin) : 0;
+}
+
+void loading_changed_strains(const Loading *loading, const LoadStrains *strains, double begin, double time)
+{
+  clear_strains(strains);
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (!load->type->strain) continue;
+    const double now = strain_factor(loading, load, time),
+                 before = isnan(begin) ? 0 : factor_before(loading, load, begin);
+    if (now != before) load->type->strain(load, strains, now - before);
+  }
+}
+
 void loading_forget_strains(Loading *loading)
 {
   for (int l = 0; l < loading->count; ++l) loading->loads[l].applied = NAN;

@@ -445,6 +445,20 @@ static void check_cracks(breccia_model *model)
   }
 }
 
+/** Faces of a body whose motion is prescribed, and those beyond which it is carried on by its image: bits 1 (lower) and 2 (upper) of each axis. */
+static void find_faces(const breccia_model *model, int held[3], int mirrored[3])
+{
+  const Loading *loading = &model->loading;
+  for (int n = 0; n < loading->constraint_count; ++n) {
+    const Constraint *c = &loading->constraints[n];
+    const SelectionSpec *on = selection_spec(&model->spec->selections, &c->load->spec->on);
+    if (!on || !on->face) continue;
+    const int axis = on->face[0] - 'x', side = on->face[1] == '+' ? 2 : 1;
+    held[axis] |= side;
+    if (c->images && c->share > 0) mirrored[axis] |= side;
+  }
+}
+
 /** Beams along an axis of their lattice stretch and bend by its modulus there, which the usual calibration of bonds does not make exact. */
 static void check_slender(breccia_model *model, const Region *region)
 {
@@ -452,15 +466,21 @@ static void check_slender(breccia_model *model, const Region *region)
   const Body *body = &model->domain.body;
   const Node *given = region->keys ? section_node(region->keys, "calibration") : NULL;
   const bool meant = given && given != ((const SectionHead *)region->keys)->node;
-  const Extent e = extent_of(model);
   if (!region->type->shown_young || body->dimensions < 2 || meant) return;
-  int axis = 0;
+  Extent e = extent_of(model);
+  int axis = 0, held[3] = {0}, mirrored[3] = {0};
   double next = 0;
+  find_faces(model, held, mirrored);
+  for (int k = 0; k < body->dimensions; ++k)
+    if (mirrored[k] == 1 || mirrored[k] == 2) e.size[k] *= 2; /* the other half */
   for (int k = 1; k < body->dimensions; ++k)
     if (e.size[k] > e.size[axis]) axis = k;
-  for (int k = 0; k < body->dimensions; ++k)
-    if (k != axis) next = fmax(next, e.size[k]);
-  if (e.largest < slender * next) return;
+  for (int k = 0; k < body->dimensions; ++k) {
+    if (k == axis) continue;
+    next = fmax(next, e.size[k]);
+    if (held[k] == 3) return; /* no beam or column, but as ground between walls */
+  }
+  if (e.size[axis] < slender * next) return;
   for (int block = 0; block < body->block_count; ++block) {
     const double shown = region->type->shown_young(region->formulation, block, axis);
     if (!(fabs(shown - 1) > most) || body->lattices[block].type->turns < body->dimensions) continue;

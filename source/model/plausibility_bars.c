@@ -27,7 +27,15 @@ static const char *size_key(const BarSpec *bar)
   return isnan(bar->area) ? "diameter" : "area";
 }
 
-static void check_amount(breccia_model *model, const Bars *b)
+/** Whether a bar is repeated over a length, so that its pitch says how often. */
+static bool is_repeated_by_pitch(const BarSpec *bar)
+{
+  for (int k = 0; k < bar->repeat.count; ++k)
+    if (node_get(((const SectionHead *)bar->repeat.items[k])->node, "over")) return true;
+  return false;
+}
+
+static void check_amount(breccia_model *model, const Bars *b, double body)
 {
   const double most = 0.1; /* of the body's volume; reinforced concrete has 0.002 to 0.04 */
   double steel = 0, largest = 0;
@@ -38,16 +46,17 @@ static void check_amount(breccia_model *model, const Bars *b)
     if (volume > largest) of = n;
     largest = fmax(largest, volume);
   }
-  const double body = volume_of_body(model);
   if (!(steel > most * body)) return;
   const BarSpec *bar = b->lines.deck->items[of];
   const char *const key = size_key(bar);
   plausibility_say(
       model, section_node(bar, key),
-      "%s: bars take %.3g of the volume of the body, and reinforced concrete has 0.002 to 0.04; most of it "
+      "%s: bars take %.3g of the volume of the body, and reinforced concrete has 0.002 to 0.04; the largest part of it "
       "is bar '%s': look at the units%s%s",
       key, steel / body, bar->head.name, bar->number > 1 ? ", and at 'number'" : "",
-      bar->repeat.count ? ", and at the 'pitch'" : "");
+      is_repeated_by_pitch(bar) ? ", and at the 'pitch'"
+      : bar->repeat.count       ? ", and at how often it is repeated"
+                                : "");
 }
 
 /** One bar, of all parallel ones on a line. In the deck's units. */
@@ -57,19 +66,20 @@ static double area_of_one(const Bars *b, int deck_bar)
   return b->bar_area[b->lines.first[deck_bar]] / (double)bar->number;
 }
 
-/** Wires thinner than half a millimetre, and thinner than two where all lines of the bar are next to nothing in the body. */
-static void check_thinness(breccia_model *model, const Bars *b, int deck_bar)
+/** Wires thinner than two millimetres of which all lines together are next to nothing in the body. */
+static void check_thinness(breccia_model *model, const Bars *b, double body, int deck_bar)
 {
-  const double finest = 0.2e-6, thin = 3e-6, least = 1e-5; /* m2, m2, of the body's volume */
+  const double thin = 3e-6, least = 1e-5; /* m2, of the body's volume */
   const BarSpec *bar = b->lines.deck->items[deck_bar];
   const double area = plausibility_in_si(model, "area", area_of_one(b, deck_bar)),
-               share = volume_of(b, deck_bar) / volume_of_body(model);
-  if (area >= finest && (area >= thin || share >= least)) return;
+               share = volume_of(b, deck_bar) / body;
+  if (area >= thin || share >= least) return;
   const char *const key = size_key(bar);
-  plausibility_say(model, section_node(bar, key),
-                   "%s: bar '%s' is %.2g mm2 thick and takes %.2g of the volume of the body, and reinforcement has 20 "
-                   "mm2 to 3000 mm2 a bar and 0.002 to 0.04 of a body; look at its unit",
-                   key, bar->head.name, 1e6 * area, share);
+  plausibility_say(
+      model, section_node(bar, key),
+      "%s: bar '%s' has a section of %.2g mm2 and takes %.2g of the volume of the body, and reinforcement has "
+      "20 mm2 to 3000 mm2 a bar and 0.002 to 0.04 of a body; look at its unit",
+      key, bar->head.name, 1e6 * area, share);
 }
 
 /** Lines that lie within one particle, as in metres where the body is in millimetres. */
@@ -91,7 +101,7 @@ static void check_length(breccia_model *model, const Bars *b, int deck_bar)
                    bar->head.name, length, unit, length / spacing);
 }
 
-/** Lines that lie in each other, and a pitch that leaves none but those at both ends. */
+/** Lines that overlap, and a pitch that leaves none but those at both ends. */
 static void check_pitch(breccia_model *model, const Bars *b, int deck_bar)
 {
   const BarSpec *bar = b->lines.deck->items[deck_bar];
@@ -102,8 +112,8 @@ static void check_pitch(breccia_model *model, const Bars *b, int deck_bar)
     const RepeatSpec *r = bar->repeat.items[k];
     if (r->pitch < thick)
       plausibility_say(model, section_node(r, "pitch"),
-                       "pitch: lines of bar '%s' follow each other at %.3g %s, and are %.3g %s thick, so that they lie "
-                       "in each other; look at the units",
+                       "pitch: lines of bar '%s' follow each other at %.3g %s, and are %.3g %s thick, so that they "
+                       "overlap; look at the units",
                        bar->head.name, r->pitch, unit, thick, unit);
     else if (r->pitch > r->over)
       plausibility_say(
@@ -220,6 +230,8 @@ static void check_yields(breccia_model *model, const Bars *b)
 static void check_prestress(breccia_model *model, const Bars *b, const Load *load)
 {
   if (!plausibility_is_kind(load->spec, "prestress")) return;
+  const double time = plausibility_time_of_load(model, load),
+               peak = history_peak(&load->history, isfinite(time) ? time : history_rise(&load->history));
   double *strain = memory_zeroed((size_t)b->specs->count, sizeof *strain, "bars", NULL);
   if (strain) load->type->strain(load, &(LoadStrains){.of_bars = strain, .bar_count = b->specs->count}, 1);
   for (int n = 0; strain && n < b->lines.deck->count; ++n) {
@@ -227,18 +239,19 @@ static void check_prestress(breccia_model *model, const Bars *b, const Load *loa
     const Material *m = material_of(model, bar);
     const double stress = material_young(m) * strain[b->lines.first[n]],
                  yield = plausibility_parameter(model, m, "yield stress");
-    const double peak = history_peak(&load->history, model->solver.clock.end_time - load->begin);
     Text words = {0}, most = {0};
-    quantity_describe(plausibility_in_si(model, "stress", stress), "Pa", &words);
     if (!(fabs(stress) > yield)) {
+      quantity_describe(plausibility_in_si(model, "stress", fabs(stress * peak)), "Pa", &words);
       if (stress * peak < 0)
-        plausibility_say(model, load->node,
-                         "prestress: bar '%s' is pressed, by %s at first, and pulls the body apart; tension is "
-                         "positive",
-                         bar->head.name, text_words(&words));
+        plausibility_say(
+            model, load->node,
+            "prestress: bar '%s' is pressed by %s at first, so that it pushes against the body; tension is "
+            "positive: look at the sign",
+            bar->head.name, text_words(&words));
       text_free(&words);
       continue;
     }
+    quantity_describe(plausibility_in_si(model, "stress", stress), "Pa", &words);
     quantity_describe(plausibility_in_si(model, "stress", yield), "Pa", &most);
     plausibility_say(
         model, load->node,
@@ -255,11 +268,12 @@ void plausibility_warn_of_bars(breccia_model *model)
 {
   const Bars *b = bars_among(&model->domain.forces);
   if (!b) return;
-  check_amount(model, b);
+  const double body = volume_of_body(model);
+  check_amount(model, b, body);
   check_yields(model, b);
   for (int l = 0; l < model->loading.count; ++l) check_prestress(model, b, &model->loading.loads[l]);
   for (int n = 0; n < b->lines.deck->count; ++n) {
-    check_thinness(model, b, n);
+    check_thinness(model, b, body, n);
     check_length(model, b, n);
     check_pitch(model, b, n);
     check_faces(model, b, n);

@@ -6,6 +6,8 @@
 #include "body/nearer.h"
 #include "failure/critical_stretch.h"
 #include "loading/load/water_pressure.h"
+#include "solver/explicit.h"
+#include "solver/implicit.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,8 +107,7 @@ static void check_water(breccia_model *model, const Load *load)
                    above, length, above / tall);
 }
 
-/** In the deck's units, from when a load begins until it ends; INFINITY where the length of a stage shows only in it. */
-static double time_of_load(const breccia_model *model, const Load *load)
+double plausibility_time_of_load(const breccia_model *model, const Load *load)
 {
   const Solver *s = &model->solver;
   double time = 0;
@@ -121,7 +122,7 @@ static void check_growth(breccia_model *model, const Load *load)
   const History *h = &load->history;
   const bool table = h->value_node && !strcmp(h->value_node->key, "table");
   if (!table && !(h->value_node && !strcmp(h->value_node->key, "ramp to"))) return;
-  const double time = time_of_load(model, load),
+  const double time = plausibility_time_of_load(model, load),
                grown = table ? h->line.rows[2 * (h->line.count - 1)] : h->value->number;
   const double largest = history_peak(h, grown);
   if (!(time < (1 - 1e-9) * grown) || fabs(history_peak(h, time)) >= (1 - 1e-9) * fabs(largest)) return;
@@ -143,17 +144,30 @@ static bool goes_on_by_name(const breccia_model *model, const Load *load)
   return false;
 }
 
+/** Whether a stage looks for a state of rest, or lets nothing swing, or nothing yield by it. */
+static bool settles(const breccia_model *model, int64_t number)
+{
+  const double strong = 0.5; /* of critical: 0.16 beyond the state of rest */
+  const SolveSpec *stage = model->solver.stages->items[number];
+  const ExplicitSpec *steps = stage->of[SOLVER_explicit];
+  const ImplicitSpec *implicit = stage->of[SOLVER_implicit];
+  if (solver_stage_rests(&model->solver, number) || !strcmp(stage->laws, "elastic")) return true;
+  if (steps && (!isnan(steps->rest) || steps->local_damping > 0)) return true;
+  const DampingKeys *keys = steps ? &steps->damping_given : implicit ? &implicit->damping_given : NULL;
+  return keys && damping_ratio(keys) >= strong;
+}
+
 /** Strains that a body in motion begins from at once: nobody means the waves and the swinging of tendons that are let go in no time, or of shrinkage. */
 static void check_sudden_strain(breccia_model *model, const Load *load)
 {
   const Solver *s = &model->solver;
   const bool grows = !isnan(solver_stage_steady(s, load->first)) && !load->spec->history; /* by 'quasi-static' */
-  if (!load->type->strain || solver_stage_rests(s, load->first) || grows || goes_on_by_name(model, load)) return;
+  if (!load->type->strain || settles(model, load->first) || grows || goes_on_by_name(model, load)) return;
   if (load_magnitude(load->spec) * history_factor(&load->history, 0) == 0) return;
   plausibility_say(model, load->node,
-                   "%s: it acts at once, so that the body swings, at first to about twice the way on which it comes to "
-                   "rest; let it grow over some periods, like 'history: {ramp to: ...}', or take 'quasi-static', or a "
-                   "stage of 'static'",
+                   "%s: it acts at once: without much damping displacements first reach about twice those at rest; let "
+                   "it grow over some periods, like 'history: {ramp to: ...}', or take 'quasi-static', or a stage of "
+                   "'static'",
                    load->node->key);
 }
 

@@ -5,6 +5,9 @@
 
 #include "model/plausibility.h"
 
+/** In the deck's units, from when a load begins until it ends; INFINITY where the length of a stage shows only in it. */
+double plausibility_time_of_load(const breccia_model *model, const Load *load);
+
 /** A value in the deck's units as SI has it. */
 double plausibility_in_si(const breccia_model *model, const char *dimension, double value);
 

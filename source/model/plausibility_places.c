@@ -2,8 +2,12 @@
 #include "model/plausibility_parts.h"
 
 #include "bars/bars.h"
+#include "base/memory.h"
+#include "domain/initial_stress.h"
+#include "results/profile.h"
+#include "solver/static.h"
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 static const double far_away = 2; /* spacings; within a body no point is farther than 0.87 of one from a particle */
 
@@ -51,9 +55,28 @@ static void check_point(breccia_model *model, const Node *node, const double poi
   check_distance(model, node, point, found, "particle");
 }
 
+/** One given on the spot, and those that it is made of; NULL: it has a name, and is looked at where it is given. */
 static void check_selection(breccia_model *model, const SelectionSpec *spec)
 {
-  if (spec && !isnan(spec->nearest[0])) check_point(model, section_node(spec, "nearest"), spec->nearest);
+  if (!spec) return;
+  if (!isnan(spec->nearest[0])) check_point(model, section_node(spec, "nearest"), spec->nearest);
+  const ReferenceList *const lists[] = {&spec->any_of, &spec->all_of, &spec->except};
+  for (size_t n = 0; n < sizeof lists / sizeof *lists; ++n)
+    for (int k = 0; k < lists[n]->count; ++k) check_selection(model, lists[n]->items[k].section);
+}
+
+static void check_points(breccia_model *model, const void *section, const char *key, const NumberList *list)
+{
+  for (int k = 0; k < list->count; ++k) check_point(model, section_node(section, key), list->values + 3 * k);
+}
+
+static void check_control(breccia_model *model, const ControlSpec *control)
+{
+  if (!control) return;
+  check_points(model, control, "opening between", &control->opening);
+  check_selection(model, control->displacement.section);
+  check_selection(model, control->bond.section);
+  check_selection(model, control->path.section);
 }
 
 static void check_watch(breccia_model *model, const WatchSpec *watch)
@@ -61,10 +84,8 @@ static void check_watch(breccia_model *model, const WatchSpec *watch)
   const Reference *const references[] = {&watch->displacement, &watch->velocity, &watch->force, &watch->reaction,
                                          &watch->stress,       &watch->history,  &watch->damage};
   for (size_t k = 0; k < sizeof references / sizeof *references; ++k) check_selection(model, references[k]->section);
-  for (int k = 0; k < watch->opening.count; ++k)
-    check_point(model, section_node(watch, "opening between"), watch->opening.values + 3 * k);
-  for (int k = 0; k < watch->bond.count; ++k)
-    check_point(model, section_node(watch, "bond between"), watch->bond.values + 3 * k);
+  check_points(model, watch, "opening between", &watch->opening);
+  check_points(model, watch, "bond between", &watch->bond);
   const Bars *bars = bars_among(&model->domain.forces);
   const int bar = watch->bar && bars ? bars_find(bars, watch->bar) : -1;
   if (bar < 0 || isnan(watch->at[0])) return;
@@ -73,34 +94,80 @@ static void check_watch(breccia_model *model, const WatchSpec *watch)
   check_distance(model, section_node(watch, "at"), watch->at, middle, "element of the bar");
 }
 
-/** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
-static void check_pair(breccia_model *model, const Load *one, const Load *other)
+/** A load on the particle nearest to a point. */
+typedef struct PointLoad {
+  const Load *load;
+  const SelectionSpec *on;
+} PointLoad;
+
+static bool act_together(const Load *one, const Load *other)
 {
-  const SelectionSpec *a = selection_spec(&model->spec->selections, &one->spec->on),
-                      *b = selection_spec(&model->spec->selections, &other->spec->on);
-  if (!a || !b || isnan(a->nearest[0]) || isnan(b->nearest[0])) return;
-  if (one->selection.count != 1 || other->selection.count != 1) return;
-  if (one->selection.places[0] != other->selection.places[0] || apart(a->nearest, b->nearest) == 0) return;
+  return one->first < other->behind && other->first < one->behind;
+}
+
+/** Points that are apart in the deck and have the same particle: of a body that is given in another unit, mostly. */
+static bool is_pair(const PointLoad *one, const PointLoad *other)
+{
+  return one->load->selection.places[0] == other->load->selection.places[0] && one->on != other->on &&
+         apart(one->on->nearest, other->on->nearest) != 0 && act_together(one->load, other->load);
+}
+
+/** Whether loads before the last one have the same two selections as the pair of it and another. */
+static bool is_told(const PointLoad *loads, const PointLoad *one, const PointLoad *last)
+{
+  for (const PointLoad *b = loads; b <= last; ++b)
+    for (const PointLoad *a = loads; a < b && (b < last || a < one); ++a)
+      if (((a->on == one->on && b->on == last->on) || (a->on == last->on && b->on == one->on)) && is_pair(a, b))
+        return true;
+  return false;
+}
+
+static void say_pair(breccia_model *model, const PointLoad *one, const PointLoad *other)
+{
   double at[3];
   char length[64];
   Text words = {0};
-  place_of(model, one->selection.places[0], at);
+  place_of(model, one->load->selection.places[0], at);
   add_point(model, at, &words);
   units_name(model->units, dimension_find("length"), length, sizeof length);
-  plausibility_say(model, section_node(b, "nearest"),
+  plausibility_say(model, section_node(other->on, "nearest"),
                    "nearest: the particle at %s is also the nearest to the point of the load in line %d, %.3g %s from "
                    "this one; look at the coordinates and their unit",
-                   text_words(&words), one->spec->head.node->line, apart(a->nearest, b->nearest), length);
+                   text_words(&words), one->load->spec->head.node->line, apart(one->on->nearest, other->on->nearest),
+                   length);
   text_free(&words);
+}
+
+static void check_pairs(breccia_model *model)
+{
+  PointLoad *loads = memory_zeroed((size_t)model->loading.count, sizeof *loads, "loads", NULL);
+  int count = 0;
+  for (int k = 0; loads && k < model->loading.count; ++k) {
+    const Load *load = &model->loading.loads[k];
+    const SelectionSpec *on = selection_spec(&model->spec->selections, &load->spec->on);
+    if (on && !isnan(on->nearest[0]) && load->selection.count == 1) loads[count++] = (PointLoad){load, on};
+  }
+  for (int k = 0; k < count; ++k)
+    for (int n = 0; n < k; ++n)
+      if (is_pair(&loads[n], &loads[k]) && !is_told(loads, &loads[n], &loads[k])) say_pair(model, &loads[n], &loads[k]);
+  free(loads);
 }
 
 void plausibility_warn_of_places(breccia_model *model)
 {
   const DeckSpec *deck = model->spec;
   for (int k = 0; k < deck->selections.count; ++k) check_selection(model, deck->selections.items[k]);
-  for (int k = 0; k < model->loading.count; ++k) {
-    check_selection(model, model->loading.loads[k].spec->on.section);
-    for (int n = 0; n < k; ++n) check_pair(model, &model->loading.loads[n], &model->loading.loads[k]);
-  }
+  for (int k = 0; k < model->loading.count; ++k) check_selection(model, model->loading.loads[k].spec->on.section);
+  check_pairs(model);
   for (int k = 0; k < deck->watches.count; ++k) check_watch(model, deck->watches.items[k]);
+  for (int k = 0; k < deck->profiles.count; ++k)
+    check_selection(model, ((const ProfileSpec *)deck->profiles.items[k])->of.section);
+  for (int k = 0; k < deck->initial_stress.count; ++k)
+    check_selection(model, ((const InitialStressSpec *)deck->initial_stress.items[k])->on.section);
+  for (int k = 0; deck->failure && k < deck->failure->nowhere.count; ++k)
+    check_selection(model, ((const NoFailureSpec *)deck->failure->nowhere.items[k])->of.section);
+  for (int k = 0; k < deck->solve.count; ++k) {
+    const StaticSpec *rest = ((const SolveSpec *)deck->solve.items[k])->of[SOLVER_static];
+    if (rest) check_control(model, rest->control);
+  }
 }

@@ -58,7 +58,6 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
   return status;
 }
 
-/** The deck has bars, and they have what they are to be coloured by. */
 /** A bar that is drawn is one of the deck, or a line of one. */
 static int check_bar_name(const breccia_model *model, const Bars *b, const PictureSpec *picture, const char *name)
 {
@@ -77,17 +76,19 @@ static int check_bar_name(const breccia_model *model, const Bars *b, const Pictu
   return status;
 }
 
+/** The deck has bars, and they have what they are to be coloured by. */
 static int check_bars(const breccia_model *model, const PictureSpec *picture)
 {
   const Bars *b = bars_among(&model->domain.forces);
   const Node *node = section_node(picture, "bars");
   Error *error = model->reader.error;
-  const Node *given = node_get(model->document->root, "bars");
-  if (!b && given && given->count) return BRECCIA_USER_ERROR; /* they are wrong themselves */
+  if (bars_were_refused(b, &model->reader)) return BRECCIA_USER_ERROR;
   if (!b)
     return node_error(model->document, node, error, "bars: there are none to draw: the deck has no section 'bars'");
-  for (int k = 0; k < picture->of_bars.count; ++k)
-    if (check_bar_name(model, b, picture, picture->of_bars.items[k])) return BRECCIA_USER_ERROR;
+  for (int k = 0; k < picture->of_bars.count; ++k) {
+    const int status = check_bar_name(model, b, picture, picture->of_bars.items[k]);
+    if (status) return status;
+  }
   if (bar_column_is_there(bar_column_find(picture->bars), b)) return BRECCIA_OK;
   return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
                     picture->bars);
@@ -150,10 +151,11 @@ int model_check_results(breccia_model *model)
   for (int k = 0; k < spec->pictures.count; ++k) {
     const PictureSpec *picture = spec->pictures.items[k];
     if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
-    if (picture->bars && check_bars(model, picture)) status = BRECCIA_USER_ERROR;
+    int bad = picture->bars ? check_bars(model, picture) : BRECCIA_OK;
+    if (bad) status = bad;
     if (!picture->field) continue;
     TextList one = {(const char *[]){picture->field}, 1};
-    int bad = check_names(model, &model->domain, &one, section_node(picture, "field"));
+    bad = check_names(model, &model->domain, &one, section_node(picture, "field"));
     if (!bad) bad = check_component(model, picture);
     if (bad) status = bad;
   }

@@ -71,19 +71,26 @@ static const char *words_of(const Node *map, const char *key)
   return node && node->kind == NODE_SCALAR ? node->text : "";
 }
 
+/** Lengths between places do not count from where these were. */
+static bool counts_from_places(const char *column)
+{
+  return strcmp(column, "distance") != 0 && !strstr(column, "slip");
+}
+
 /** Finds where lengths jump, because displacements count from zero again in a stage, as the summary of the run tells it.
- *  @param[in] step  of the points of a line */
-static void find_jumps(const char *folder, const double *step, Columns *line)
+ *  @param[in] step  of the points of a line, which is the k-th column over the first */
+static void find_jumps(const char *folder, const CurveNames *names, int k, const double *step, Columns *line)
 {
   char *path = text_format("%s/summary.json", folder), *text = path ? text_read_file(path, NULL) : NULL;
   Document *document = text ? document_parse(text, strlen(text), path, NULL) : NULL;
   const Node *root = document ? document->root : NULL,
              *stages = root && root->kind == NODE_MAP ? node_get(root, "stages") : NULL;
   const char *length = stages ? words_of(node_get(root, "units"), "positions and displacements") : "";
-  const bool moves = *length && (!strcmp(line->x_unit, length) || !strcmp(line->y_unit, length));
-  for (int k = 0; moves && stages->kind == NODE_LIST && k < stages->count; ++k) {
-    const Node *steps = stages->items[k].kind == NODE_MAP ? node_get(&stages->items[k], "steps") : NULL;
-    if (strcmp(words_of(&stages->items[k], "displacements_from_zero"), "true") != 0) continue;
+  const bool moves = *length && ((!strcmp(line->x_unit, length) && counts_from_places(names->column[0])) ||
+                                 (!strcmp(line->y_unit, length) && counts_from_places(names->column[k])));
+  for (int s = 0; moves && stages->kind == NODE_LIST && s < stages->count; ++s) {
+    const Node *steps = stages->items[s].kind == NODE_MAP ? node_get(&stages->items[s], "steps") : NULL;
+    if (strcmp(words_of(&stages->items[s], "displacements_from_zero"), "true") != 0) continue;
     if (!steps || steps->kind != NODE_LIST || !steps->count || steps->items[0].kind != NODE_SCALAR) continue;
     const double end = strtod(steps->items[0].text, NULL); /* of the stage before, which has the row */
     for (int i = 1; i < line->count; ++i) line->apart[i] |= step[i - 1] <= end && step[i] > end;
@@ -114,7 +121,7 @@ static int read_line(const char *folder, const CurveNames *names, int k, Columns
   int status = line->y ? BRECCIA_OK : BRECCIA_USER_ERROR;
   if (!status && !(line->apart = memory_zeroed((size_t)line->count, sizeof(bool), "curves", error)))
     status = BRECCIA_FAILURE;
-  if (!status) find_jumps(folder, sx, line);
+  if (!status) find_jumps(folder, names, k, sx, line);
   free(sx);
   free(sy);
   return status;

@@ -78,7 +78,8 @@ static const Field picture_fields[] = {
      .standard = "",
      .meaning =
          "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above, and [-30, 25] of "
-         "bodies that are longest along y; plates whose thickness lies along z are seen from the front"},
+         "bodies more than twice as long along y as along x; plates whose thickness lies along z are seen from the "
+         "front"},
     {.key = "inside",
      .kind = FIELD_SECTION,
      .offset = offsetof(PictureSpec, inside),
@@ -173,6 +174,9 @@ static void check_picture(const DeckReader *reader, void *section)
     node_error(reader->document, section_node(p, "range"), reader->error,
                "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
   refuse_useless_keys(reader, p);
+  if (node_get(p->head.node, "of bars") && !p->of_bars.count)
+    node_error(reader->document, section_node(p, "of bars"), reader->error,
+               "of bars: name those that are drawn, as under 'bars' of the deck");
   if (p->over_length && p->times.count > BAR_CURVE_TIMES)
     node_error(reader->document, section_node(p, "at"), reader->error,
                "at: curves over the length of bars are drawn at up to %d times, and these are %d", BAR_CURVE_TIMES,

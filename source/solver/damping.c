@@ -77,6 +77,12 @@ Rayleigh damping_of(const DampingKeys *keys, const DeckReader *reader, const voi
   return rayleigh_of(keys->rayleigh);
 }
 
+double damping_ratio(const DampingKeys *keys)
+{
+  const DampingSpec *mass = keys->mass.section;
+  return keys->rayleigh ? keys->rayleigh->ratio : mass ? mass->ratio : NAN;
+}
+
 void damping_describe(const Rayleigh *damping, const char *time, Text *text)
 {
   if (damping->mass > 0) text_add(text, ", damping %.4g 1/%s", damping->mass, time);

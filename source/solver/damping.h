@@ -52,6 +52,9 @@ typedef struct Rayleigh {
 /** What the keys of a section come to; says where two of them say the same. */
 Rayleigh damping_of(const DampingKeys *keys, const DeckReader *reader, const void *section);
 
+/** The ratio of critical damping that they give; NaN where they give none, or a rate. */
+double damping_ratio(const DampingKeys *keys);
+
 /** Adds words of it to those of a stage. @param[in] time  the deck's unit */
 void damping_describe(const Rayleigh *damping, const char *time, Text *text);
 

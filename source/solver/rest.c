@@ -30,6 +30,30 @@ static bool is_meant(const Solver *s)
   return true;
 }
 
+/** Whether something else than supports and strains acts: a force, or a motion that is prescribed. */
+static bool is_loaded(const Solver *s)
+{
+  for (int k = 0; k < s->loading->count; ++k) {
+    const Load *load = &s->loading->loads[k];
+    if (load_acts(s->loading, load) && load->type->force && !load->type->brake && !load->type->energy &&
+        load_magnitude(load->spec) != 0 && load_factor(load, s->clock.time) != 0)
+      return true;
+  }
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *c = &s->loading->constraints[n];
+    if (load_acts(s->loading, c->load) && c->value != 0 && load_factor(c->load, s->clock.time) != 0) return true;
+  }
+  return false;
+}
+
+/** Forces by strains that the stage has brought or changed, as those of earlier stages are in balance by then; these where nothing else acts. */
+static int find_forces_of_strains(const Solver *s, double *sum, Error *error)
+{
+  const int status = domain_forces_of_strains(s->domain, s->clock.stage_time, s->clock.time, sum, error);
+  if (status || *sum > 0 || is_loaded(s)) return status;
+  return domain_forces_of_strains(s->domain, NAN, s->clock.time, sum, error);
+}
+
 int rest_find(const Solver *s, Rest *rest, Error *error)
 {
   *rest = (Rest){.meant = is_meant(s)};
@@ -37,7 +61,7 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   const Particles *p = s->domain->particles;
   const Unknowns unknowns = unknowns_of(s->domain, s->loading);
   double *free_force[MOTIONS] = {0}, unbalanced = 0, acting = 0, squares = 0, held_squares = 0, external_squares = 0;
-  const bool failed = !vectors_make(free_force, p, "forces out of balance", error);
+  bool failed = !vectors_make(free_force, p, "forces out of balance", error);
   for (int k = 0; k < p->motions && !failed; ++k) {
     for (int64_t i = 0; i < p->places; ++i) free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
   }
@@ -68,12 +92,14 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
     external_squares += p->volume[i] * p->volume[i] * external;
   }
   vectors_free(free_force);
+  double of_strains = 0;
+  if (!failed && !s->type->rests) failed = find_forces_of_strains(s, &of_strains, error) != BRECCIA_OK;
   if (failed) return BRECCIA_FAILURE;
+  acting += of_strains;
   if (s->type->rests) { /* the measure by which it has converged */
     unbalanced = sqrt(squares);
     acting = sqrt(fmax(held_squares, external_squares));
-  } else
-    acting += domain_forces_of_strains(s->domain);
+  }
   if (s->type->exerted) acting = fmax(acting, s->type->exerted(s)); /* nothing acts on what was unloaded, or is torn */
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
   rest->kinetic =

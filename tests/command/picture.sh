@@ -217,7 +217,7 @@ for word in "Stress along bars at 1 s: 6 of 8, those with the largest" ">along<"
 "$breccia" plot steel --bars stress --over-length --of-bars across --output long.svg > out 2>&1 || fail "over length of bars: $(cat out)"
 contains "over length of bars" "$(cat long.svg)" "Stress along bars at 1 s: 6 of 7, those with the largest"
 [ -z "$(grep '>along<' long.svg)" ] || fail "over length: a bar that was not asked for"
-"$breccia" plot steel --bars slip --over-length --of-bars "across 3,along" --output long.svg > out 2>&1 || fail "over length of bars: $(cat out)"
+"$breccia" plot steel --bars slip --over-length --of-bars "across 3, along" --output long.svg > out 2>&1 || fail "over length of bars: $(cat out)"
 for word in ">across 3<" ">along<" "Slip along bars at 1 s"; do contains "over length of two bars" "$(cat long.svg)" "$word"; done
 [ -z "$(grep 'across 2<\|those with' long.svg)" ] || fail "over length: a line that was not asked for"
 equal "nothing is said of a name that is given" "$(cat out)" long.svg
@@ -243,6 +243,7 @@ refused_bars "bars: 'slip' is of bars with a 'bond', and none has one" "{bars: s
 refused_bars "bars: there are none to draw: the deck has no section 'bars'" "{bars: stress}" "/^bars:/d; /^  along:/d; /^  across:/d; /^  steel:/d"
 refused_bars "of bars: there is no bar 'cross'; did you mean 'across'?" "{bars: stress, over length: yes, of bars: [along, cross]}"
 refused_bars "of bars: there is no bar 'across 8'" "{bars: stress, over length: yes, of bars: [across 8]}"
+refused_bars "of bars: name those that are drawn, as under 'bars' of the deck" "{bars: stress, over length: yes, of bars: []}"
 refused_bars "of bars: a picture of bars has no use for it; leave it out" "{bars: stress, of bars: [along]}"
 # keys that a picture has no use for
 refused_bars "over length: a picture of a field has no use for it; leave it out" "{field: damage, over length: yes}"

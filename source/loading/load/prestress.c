@@ -69,8 +69,7 @@ static int create(Load *load, const LoadMaking *making)
   Prestress *p = load->own = memory_zeroed(1, sizeof *p, "loads", reader->error);
   if (!p) return BRECCIA_FAILURE;
   p->bars = making->forces ? bars_among(making->forces) : NULL;
-  const Node *given = node_get(reader->document->root, "bars");
-  if (!p->bars && given && given->count) return BRECCIA_USER_ERROR; /* they are wrong themselves */
+  if (bars_were_refused(p->bars, reader)) return BRECCIA_USER_ERROR;
   p->bar = memory_zeroed((size_t)spec->bars.count, sizeof *p->bar, "loads", reader->error);
   p->strain = memory_zeroed((size_t)spec->bars.count, sizeof *p->strain, "loads", reader->error);
   if (!p->bar || !p->strain) return BRECCIA_FAILURE;
