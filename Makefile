@@ -26,12 +26,11 @@ demo-opensees: setup all
 examples: all
 	@python3 -B scripts/examples.py $(if $(STRICT),--strict) . build/release build/examples $(EXAMPLES)
 
+# All tests, or those of some matters (folders of tests/unit, and the scripts that go with them) or of some names: `make test TESTS="laws restart"`.
+# Builds what these need, runs them, and prints the ten that took longest.
 test:
 	@sh scripts/setup.sh test
-	@cmake --preset test > build-log.txt 2>&1 || { cat build-log.txt; exit 1; }
-	@rm -f build-log.txt
-	@cmake --build --preset test --parallel $(cores)
-	@ctest --preset test --parallel $(jobs)
+	@sh scripts/tests.sh test $(TESTS)
 
 # Other people's programs from the Python index, in an environment of the project's own.
 test-external:
@@ -90,16 +89,12 @@ check-format:
 # The whole suite under the address and undefined-behaviour sanitizers.
 asan:
 	@sh scripts/setup.sh test
-	@cmake --preset asan-ubsan > /dev/null
-	@cmake --build --preset asan-ubsan --parallel $(cores)
-	@ctest --preset asan-ubsan --parallel $(jobs)
+	@sh scripts/tests.sh asan-ubsan $(TESTS)
 
 # What works on several threads, under clang's thread sanitizer. It wants addresses where it looks for them: setarch, where that is allowed.
 tsan:
 	@sh scripts/setup.sh test
-	@cmake --preset tsan > /dev/null
-	@cmake --build --preset tsan --target tests_of_threads --parallel $(cores)
-	@$$(setarch -R true 2> /dev/null && echo setarch -R) ctest --preset tsan --parallel $(jobs)
+	@$$(setarch -R true 2> /dev/null && echo setarch -R) sh scripts/tests.sh tsan threads
 
 # Built for arm64 on another machine, without warnings; some quick tests of it under an emulator. Servers are none of these: programs that it starts are for this machine.
 arm64_tests := test_golden test_elastic_first test_bar test_faces test_many test_springs_and_ties test_hybrid_strain test_micropolar test_carried_reactions test_checkpoint test_result_file
@@ -132,8 +127,8 @@ clang-test:
 # random frames, for FUZZ_SECONDS each.
 fuzz:
 	@sh scripts/setup.sh test
-	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
+	@cmake --preset asan-ubsan > /dev/null
+	@cmake --build --preset asan-ubsan --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
 
 # The tests that inject faults, by the thousand, for about TORTURE_MINUTES (60); remakes the table of docs/reliability.md.
@@ -141,8 +136,8 @@ torture:
 	@sh scripts/setup.sh test
 	@cmake --preset test > /dev/null
 	@cmake --build --preset test --parallel $(cores)
-	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
+	@cmake --preset asan-ubsan > /dev/null
+	@cmake --build --preset asan-ubsan --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
 	@python3 -B tests/torture.py docs/reliability.md
 
 # Small faults in lines that differ from BASE, one at a time; prints those that no test notices. 20 of them and half an hour, unless told otherwise:

@@ -64,7 +64,7 @@ def try_fault(fault, seconds, counted, whole):
     text = place.read_text()
     rows = text.splitlines()
     rows[fault.line - 1] = fault.after
-    targets = ["breccia_objects", "breccia_command", "breccia", *(name for name in seconds if name.startswith("test_"))]
+    targets = ["breccia_objects", "breccia_command", "breccia", *(f"tests_of_{name}" for name in seconds)]
     asked = suite.that_run(fault.file, fault.line, counted) | (seconds.keys() - set(counted))
     asked = suite.in_order(asked, seconds, fault.file)
     try:

@@ -5,6 +5,11 @@ bool under_sanitizers(void)
   return getenv("BRECCIA_SANITIZED") != NULL;
 }
 
+bool whole_walks(void)
+{
+  return getenv("BRECCIA_WHOLE") != NULL && !under_sanitizers();
+}
+
 void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name)
 {
   for (int k = 0; k < rows; ++k)

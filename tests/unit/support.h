@@ -17,6 +17,8 @@
 
 /** Whether this runs under the sanitizers, which make it five to ten times slower: what holds for any body, law or spacing is then tried on fewer. */
 bool under_sanitizers(void);
+/** Returns true if BRECCIA_WHOLE=1 asks for all bodies and laws (.ci/nightly) instead of the sample that runs with every change. */
+bool whole_walks(void);
 
 /** A model from a deck given as text with %-directives; fails the test with the reader's words if it is refused. */
 breccia_model *model_of(const char *format, ...) __attribute__((format(printf, 1, 2)));

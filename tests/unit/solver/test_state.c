@@ -140,7 +140,7 @@ static pid_t serve(const char *address)
   assert_true(child >= 0);
   if (!child) {
     dup2(ends[1], STDOUT_FILENO);
-    execl(BRECCIA_COMMAND, "breccia", "serve", "--listen", address, "--once", (char *)NULL);
+    execl(COMMAND, "breccia", "serve", "--listen", address, "--once", (char *)NULL);
     _exit(127);
   }
   close(ends[1]);
@@ -309,7 +309,7 @@ static breccia_model *pulled_bar(const char *strain, const char *more)
            "peridynamics: {formulation: correspondence, strain: %s}\n"
            "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.3, 0.1, 0]}]\n%s",
            strain, more);
-  return model_of(deck);
+  return model_of("%s", deck);
 }
 
 /** Evaluations of elastic bodies may leave strains and stresses out: whoever looks finds the bits that they would have written, energies, too, and force
@@ -423,7 +423,7 @@ static void arrays_stay_where_they_are(void **state)
              "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.1, 0, 0]}]\n"
              "solve: {%s}\n",
              solve[n]);
-    breccia_model *m = model_of(deck);
+    breccia_model *m = model_of("%s", deck);
     double *held[NAMES];
     for (int k = 0; k < NAMES; ++k) held[k] = breccia_model_array(m, names[k]);
     for (int step = 1; step <= 4; ++step) {

@@ -86,7 +86,8 @@ static void few_increments_at_rest_spend_no_more(void **state)
               {plasticity, "plane strain", 30},
               {flowing, "plane strain", 20}};
   if (under_sanitizers()) skip(); /* bars that are pulled apart walk the same code */
-  for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
+  const size_t count = whole_walks() ? sizeof bars / sizeof *bars : 3;
+  for (size_t k = 0; k < count; ++k) {
     char drawn[400];
     snprintf(drawn, sizeof drawn,
              "loads: [{on: {face: x-, layers: 3}, displacement: [-0.15e-3, 0], history: {ramp to: 1}},\n"
