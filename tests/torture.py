@@ -30,8 +30,8 @@ FAULTS, SHIM = "tests/faults", f"{BUILD}/tests/libio_faults.so"
 MEMORY = ["python3", "-B", f"{FAULTS}/memory.py", COMMAND, f"{BUILD}/tests/libfailing_memory.so", COMPARE]
 
 
-def unit_test(name):
-    return ["sh", "-c", f"cd {BUILD}/tests && ./{name}"]
+def unit_test(program, name):
+    return ["sh", "-c", f"cd {BUILD}/tests && ./{program} {name}"]
 
 
 def fuzz(name, target, pattern=r"number_of_executed_units: (\d+)", most=100000):
@@ -54,8 +54,8 @@ NARROW = [
     ("writes that fail, once or for good", ["bash", "tests/command/io_faults.sh", COMMAND, ".", BUILD],
      {"IO_FAULTS": str(EVERY)}, r"failing writes: (\d+) tried, (\d+) lost"),
     fuzz("random bodies, some steps", "fuzz_model", most=20000),
-    ("flipped bytes of checkpoints", unit_test("test_checkpoint"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
-    ("flipped bytes of results", unit_test("test_result_file"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
+    ("flipped bytes of checkpoints", unit_test("tests_results", "test_checkpoint"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
+    ("flipped bytes of results", unit_test("tests_results", "test_result_file"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
     fuzz("random frames to a server", "fuzz_server", r"server: (\d+) frames"),
     fuzz("random decks", "fuzz_deck"),
     fuzz("random answers to a client", "fuzz_client"),

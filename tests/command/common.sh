@@ -1,4 +1,5 @@
-# What the command tests share. Each is called with: the command, the source folder, the build folder.
+# Shared code of the command tests. Each is called with: the command, the source folder, the build folder.
+# BRECCIA_WHOLE=1 asks for whole walks and all decks instead of samples (.ci/nightly).
 set -u
 breccia=$1 source=$2 build=$3
 work=$(mktemp -d "${TMPDIR:-/tmp}/breccia test.XXXXXX") # a path with a space in it

@@ -102,8 +102,8 @@ if [ -n "${IO_FAULTS:-}" ]; then
     done
   done
 else
-  # In steps of a prime, so that all kinds are met.
-  for number in $(seq 1 19 "$calls") $((calls - 4)) $((calls - 3)); do # the last two: histories are closed
+  # In steps of a prime, so that all kinds of calls are among the sample.
+  for number in $(seq 1 41 "$calls") $((calls - 4)) $((calls - 3)); do # the last two: histories are closed
     if [ $((number % 2)) = 0 ]; then try $number 5 "Input/output error" $((number / 2 % 2))
     else try $number 28 "No space left on device" $((number / 2 % 2)); fi
   done
@@ -130,7 +130,7 @@ if [ -n "${IO_FAULTS:-}" ]; then
     for lasts in 0 1; do try $number 5 "Input/output error" $lasts; done
   done
 else
-  for number in $(seq 60 9 150); do try $number 5 "Input/output error" $((number % 2)); done # the first two states
+  for number in $(seq 60 17 150); do try $number 5 "Input/output error" $((number % 2)); done # the first two states
 fi
 [ $journals -gt 0 ] || fail "no journal was left, the test is too tame"
 unset FAULT_LARGER
@@ -144,7 +144,7 @@ for within in '' /solution.txt; do # what it tells of its equations is written s
   resting=$(wc -c < count)
   [ "$resting" -gt 10 ] || fail "only $resting calls on resting$within were seen"
   same resting "at rest"
-  for number in $(seq 3 "${IO_FAULTS:-$((resting / 6))}" "$resting"); do try $number 28 "No space left on device" $((number % 2)); done
+  for number in $(seq 3 "${IO_FAULTS:-$((resting / 4))}" "$resting"); do try $number 28 "No space left on device" $((number % 2)); done
 done
 deck=bar whole=whole within=
 
@@ -166,7 +166,7 @@ for command in "$restart" "$look"; do
   reading 0 $command; equal "$command: status" $? 0
   all=$(wc -c < count)
   [ "$all" -gt 20 ] || fail "$command: only $all calls that read were seen"
-  for number in $(seq 1 "${IO_FAULTS:-7}" "$all") "$all"; do
+  for number in $(seq 1 "${IO_FAULTS:-17}" "$all") "$all"; do
     reading "$number" $command
     status=$? checks=$((checks + 3))
     [ $status = 1 ] || fail "$command: read $number: status $status: $(cat out)"
@@ -205,7 +205,7 @@ pictures 0; equal "pictures: status" $? 0
 equal "pictures" "$(ls drawn/pictures | tr '\n' ' ')" "damage.png end.png "
 drawn=$(wc -c < drawn-count)
 [ "$drawn" -ge 5 ] || fail "only $drawn calls on pictures were seen"
-for number in $(seq 1 "$drawn"); do
+for number in $(seq 1 "${IO_FAULTS:-3}" "$drawn"); do
   pictures "$number"
   status=$?
   if [ $status = 0 ]; then # each process counts for itself, and none came so far

@@ -6,8 +6,9 @@ signal or keep memory that it was given, and either end with status 1 and one li
 the same output and files as with all its memory. What a run leaves that ended so can be taken up with all memory, to the same results,
 unless it says that there is nothing to take up.
 
-usage: memory.py COMMAND SHIM COMPARE_RESULTS [--every K] [--verb NAME] [--libraries]
+usage: memory.py COMMAND SHIM COMPARE_RESULTS [--every K] [--places K] [--verb NAME] [--libraries]
   --every K    the first call from each place of the program, and one in K of the others (1: all)
+  --places K   the first call from one in K places only
   --verb NAME  one verb only
   --libraries  calls of the libraries too: these may say it in their own way, and some of them crash or never end (KNOWN_ENDS), but none may
                let the program end with status 0 and wrong files, and the program's own code may not crash
@@ -329,7 +330,7 @@ class Walk:
         # Neighbours in time are alike: of the others every K-th, from a first that differs from verb to verb; of verbs with few calls some at
         # least, but of the decks of the relations, which are many, no more than that.
         every = self.options.every if self.of_relation else min(self.options.every, max(1, calls // 3))
-        chosen = sorted({*first.values(), *range(1 + sum(map(ord, self.verb)) % every, calls + 1, every)})
+        chosen = sorted({*sorted(first.values())[::self.options.places], *range(1 + sum(map(ord, self.verb)) % every, calls + 1, every)})
         problems = [p for p in pool.map(lambda n: self.judge(n, n % 2 == 0), chosen) if p]
         shutil.rmtree(self.folder)
         for problem in problems:
@@ -348,6 +349,7 @@ def main():
     parser.add_argument("shim")
     parser.add_argument("compare")
     parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--places", type=int, default=1)
     parser.add_argument("--verb")
     parser.add_argument("--libraries", action="store_true")
     options = parser.parse_args()
