@@ -1,19 +1,32 @@
 #!/bin/sh
-# fuzz_deck from the decks of the examples, fuzz_model from small ones, then fuzz_server and fuzz_client from
-# conversations, for so many seconds each, or, if FUZZ_RUNS is set, so many inputs; FUZZ_ONLY names one of them.
+# Runs the four fuzz targets, two at a time: fuzz_deck from the decks of the examples, fuzz_model from small ones, fuzz_server and
+# fuzz_client from conversations. Each runs for the seconds given or, if FUZZ_RUNS is set, that number of inputs; FUZZ_ONLY names one target.
 set -eu
 cd "$(dirname "$0")/../.."
 limit=${FUZZ_RUNS:+-runs=$FUZZ_RUNS}
 limit=${limit:--max_total_time=$1}
+programs=build/asan-ubsan
+mkdir -p build/fuzz
 # libfyaml loses what it grows for a text of more than 64 parts, as \\n is between double quotation marks. Only here: elsewhere what we lose of a deck is to be seen.
 { cat tests/leaks.txt && echo leak:libfyaml; } > build/fuzz/leaks.txt
 fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most, from those in the folder
   target=$1 longest=$2 folder=$3
   shift 3
   [ "${FUZZ_ONLY:-$target}" = "$target" ] || return 0
-  LSAN_OPTIONS="suppressions=build/fuzz/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" \
+  LSAN_OPTIONS="suppressions=build/fuzz/leaks.txt:print_suppressions=0" "$programs/$target" "$limit" \
     -seed="${FUZZ_SEED:-0}" -max_len="$longest" -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
-    -verbosity=0 -print_final_stats=1 "$@" "$folder"
+    -verbosity=0 -print_final_stats=1 "$@" "$folder" > "build/fuzz/$target.txt" 2>&1 &
+  running="$running $target:$!"
+}
+running=""
+finish() { # waits for the targets that run, prints what each wrote, and fails if one failed
+  failed=""
+  for one in $running; do
+    wait "${one#*:}" || failed="$failed ${one%:*}"
+    cat "build/fuzz/${one%:*}.txt"
+  done
+  running=""
+  [ -z "$failed" ] || { echo "failed:$failed" >&2; exit 1; }
 }
 
 # A deck of each law of the laboratory's examples, and those of bodies of all kinds.
@@ -58,6 +71,7 @@ loads: [{name: pull, on: {face: x+}, velocity: ["${sin(30 deg)*c}", free, free]}
 solve: {explicit: {end time: "${(1 + 2)^2 * 1 ms - abs(-1 us)}"}}
 Y
 fuzz fuzz_deck 4096 build/fuzz/corpus -dict=tests/fuzz/deck.dict
+finish
 
 mkdir -p build/fuzz/frames
 # A conversation: CREATE of two points, a trial, a commit with a trial, save.
@@ -76,3 +90,4 @@ mkdir -p build/fuzz/answers
   printf '\1\0\0\0\0\0\0\30%24s' ''; } > build/fuzz/answers/uniaxial
 printf '\1\0\0\0\1\0\0\0\1\0\0\0\0\100\0\0' > build/fuzz/answers/refusal-without-words
 fuzz fuzz_client 512 build/fuzz/answers
+finish
