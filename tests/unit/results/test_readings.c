@@ -180,6 +180,57 @@ static void one_state_reads_alike_wherever_it_is_told(void **state)
   }
 }
 
+/** Least and largest value of a field over all particles and written states; of vectors their length. */
+static void survey_field(const ResultView *view, const char *name, double *least, double *largest)
+{
+  *least = INFINITY;
+  *largest = -INFINITY;
+  for (int step = 0; step < view->steps; ++step) {
+    int components;
+    double *values = result_view_read(view, name, step, &components, NULL, NULL);
+    assert_non_null(values);
+    for (int64_t n = 0; n < view->particles; ++n) {
+      double square = 0;
+      for (int k = 0; k < components; ++k) square += pow(values[n * components + k], 2);
+      const double value = components > 1 ? sqrt(square) : values[n];
+      *least = fmin(*least, value);
+      *largest = fmax(*largest, value);
+    }
+    free(values);
+  }
+}
+
+/** A layer whose strain along z goes from tension at its foot to the same compression at its top: its mean stresses are of both signs, and no two
+ *  layers of particles have the same. */
+static void the_peaks_of_a_summary_are_extremes_over_all_particles(void **state)
+{
+  (void)state;
+  breccia_model *m = body("results: {every: 1, precision: double, fields: [mean stress, octahedral shear stress, "
+                          "displacement]}\n");
+  const Particles *p = m->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const double z = p->position[2][p->place_of[n]];
+    p->displacement[2][p->place_of[n]] = 1e-3 * z * (0.6 - z);
+  }
+  char path[80], file[112];
+  run_into(m, "peaks", path, sizeof path);
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  ResultView view;
+  assert_int_equal(result_view_open(&view, file, NULL), 0);
+  double least, largest;
+  survey_field(&view, "mean stress", &least, &largest);
+  assert_true(largest > 1e-3); /* kPa: K = 20 / 3 kPa times a strain of some 4e-4 */
+  assert_near(least, -largest, 1e-9 * largest);
+  assert_near(told(path, "mean_stress_lowest"), least, 1e-9 * largest);
+  assert_near(told(path, "mean_stress_highest"), largest, 1e-9 * largest);
+  survey_field(&view, "octahedral shear stress", &least, &largest);
+  assert_near(told(path, "octahedral_shear_stress"), largest, 1e-9 * largest);
+  survey_field(&view, "displacement", &least, &largest);
+  assert_near(told(path, "displacement"), largest, 1e-9 * largest);
+  result_view_close(&view);
+  breccia_model_destroy(&m);
+}
+
 static void a_watched_load_has_the_unit_and_value_of_what_it_prescribes(void **state)
 {
   (void)state;
@@ -471,6 +522,7 @@ int main(void)
       cmocka_unit_test(a_run_that_began_between_two_rows_goes_on),
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
+      cmocka_unit_test(the_peaks_of_a_summary_are_extremes_over_all_particles),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
       cmocka_unit_test(a_ball_is_lit_from_above_and_from_the_left),
       cmocka_unit_test(bodies_in_space_stand_upright_in_pictures),
