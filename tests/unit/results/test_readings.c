@@ -464,6 +464,51 @@ static void a_run_that_began_between_two_rows_goes_on(void **state)
   breccia_error_destroy(&error);
 }
 
+/** A body runs against a wall, and what damping leaves of it springs back: it is pressed most before the stop. A force does work in every step. */
+static void a_run_taken_up_again_tells_what_one_without_a_stop_does(void **state)
+{
+  (void)state;
+  static const char *const keys[] = {"external",
+                                     "kinetic",
+                                     "stored",
+                                     "imbalance",
+                                     "displacement",
+                                     "velocity",
+                                     "mean_stress_lowest",
+                                     "mean_stress_highest",
+                                     "octahedral_shear_stress"};
+  breccia_error *error = breccia_error_create();
+  double first[sizeof keys / sizeof *keys];
+  for (int stops = 0; stops < 2; ++stops) {
+    char path[80];
+    snprintf(path, sizeof path, "%s/%s", folder, stops ? "stopped" : "whole");
+    for (int part = 0; part <= stops; ++part) {
+      breccia_model *m = model_of(
+          "units: {length: m, force: kN, time: s}\n"
+          "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+          "peridynamics: {strain: small}\n"
+          "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+          "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {initial velocity: {translation: [-0.01, 0, 0]}},\n"
+          "        {on: {face: x+}, body force: [0.01, 0.02, 0]}]\n"
+          "solve: {explicit: {time step: 0.02, steps: 40, damping: 3}}\nresults: {every: 5}\n");
+      breccia_run run = {.size = sizeof(breccia_run),
+                         .folder = path,
+                         .steps = stops && !part ? 20 : 0,
+                         .restart = part ? BRECCIA_RESTART_LAST : BRECCIA_RESTART_NO};
+      const int status = breccia_model_run(m, &run, error);
+      if (status && status != BRECCIA_INTERRUPTED) fail_msg("%s", breccia_error_text(error));
+      breccia_model_destroy(&m);
+    }
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+      if (stops && told(path, keys[k]) != first[k])
+        fail_msg("%s: %.17g without a stop, %.17g with one", keys[k], first[k], told(path, keys[k]));
+      first[k] = told(path, keys[k]);
+    }
+  }
+  assert_true(first[0] != 0 && first[6] < -1.5 * first[7]);
+  breccia_error_destroy(&error);
+}
+
 static void results_hold_every_broken_bond_in_its_order(void **state)
 {
   (void)state;
@@ -520,6 +565,7 @@ int main(void)
       cmocka_unit_test(loads_of_stages_peak_within_them),
       cmocka_unit_test(a_bonds_stretch_does_not_count_from_zero_as_its_opening_does),
       cmocka_unit_test(a_run_that_began_between_two_rows_goes_on),
+      cmocka_unit_test(a_run_taken_up_again_tells_what_one_without_a_stop_does),
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
       cmocka_unit_test(the_peaks_of_a_summary_are_extremes_over_all_particles),
