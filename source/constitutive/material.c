@@ -70,7 +70,9 @@ static const Field material_fields[] = {
      .offset = offsetof(MaterialSpec, stage),
      .standard = "",
      .range = "[0, 1]",
-     .meaning = "of laws that begin elastically in a server: 0 elastic, 1 plastic"},
+     .meaning =
+         "of laws with stages in a server: 0 elastic, 1 plastic. Those of OpenSees that begin elastically, such as "
+         "PressureIndependMultiYield, are refused without it"},
     {.key = "stress unit",
      .kind = FIELD_TEXT,
      .offset = offsetof(MaterialSpec, stress_unit),
