@@ -463,12 +463,15 @@ typedef struct breccia_motion breccia_motion;
 /** Where a motion stands: accelerations, or velocities, which are differentiated. */
 typedef struct breccia_motion_file {
   size_t size;
-  const char *
-      path; /* .AT2 or .VT2 as the PEER database writes them; two columns, times and values; or, with `column`, a CSV file with a heading */
+  /* A record of PEER, the USGS (SMC), COSMOS or K-NET; two columns, times and values; values alone; or, with
+   * `column`, a CSV file with a heading. */
+  const char *path;
   const char *column; /* which one holds the values; NULL: the file has no heading, or is of the database */
   const char *times;  /* which one holds the times, with a column; NULL: "time" */
   const char *
       unit; /* of values where the file does not say it: "g", "m/s2", "cm/s"; NULL: it does. Times are in s where it says nothing */
+  double step; /* s, between values of a file of values alone; 0: the file has times, or a step of its own */
+  int channel; /* of a COSMOS file with several channels of accelerations, from 1 on; 0: the file has one */
 } breccia_motion_file;
 
 BRECCIA_API int breccia_motion_load(const breccia_motion_file *file, breccia_motion **motion, breccia_error *error);

@@ -82,8 +82,12 @@ static int read_motion(breccia_motion *motion, const breccia_motion_file *file, 
   Record record = {0};
   Units *units = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
   if (!units) return BRECCIA_FAILURE;
-  const RecordFile from = {
-      .path = file->path, .column = file->column, .times = file->times ? file->times : "time", .units = units};
+  const RecordFile from = {.path = file->path,
+                           .column = file->column,
+                           .times = file->times ? file->times : "time",
+                           .step = file->step > 0 ? file->step : NAN,
+                           .channel = file->channel,
+                           .units = units};
   int status = record_read(&record, &from, label, error);
   if (!status) status = convert(&record, file, label, units, error);
   motion->rows = record.rows;
@@ -100,6 +104,11 @@ int breccia_motion_load(const breccia_motion_file *given, breccia_motion **out, 
   breccia_motion *motion = NULL;
   int status = sized_take(&file, sizeof file, given, "breccia_motion_file", error);
   if (!status && !file.path) status = error_add(error, BRECCIA_USER_ERROR, "a motion needs the path of its file");
+  if (!status && (!(file.step >= 0) || !isfinite(file.step) || file.channel < 0))
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "a motion's step of %g s or channel %d is wrong; expected positive numbers, or 0 where the file "
+                       "tells",
+                       file.step, file.channel);
   if (!status && !(motion = memory_zeroed(1, sizeof *motion, "motion", error))) status = BRECCIA_FAILURE;
   if (!status) status = read_motion(motion, &file, error);
   status = host_leave(&host, status, error);
