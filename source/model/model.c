@@ -55,6 +55,24 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
                    time);
 }
 
+/** Refuses bodies in which nothing holds particles together. Those that springs hold may be masses on springs. */
+static int check_bonds(breccia_model *model, Error *error)
+{
+  const Domain *d = &model->domain;
+  const BlockSpec *block = d->body.blocks[0];
+  const PeridynamicsSpec *keys = model->spec->peridynamics;
+  const Node *node =
+      keys && node_get(keys->head.node, "horizon") ? node_get(keys->head.node, "horizon") : block->head.node;
+  if (d->family.bonds || loading_eigenvalue(&model->loading, d->particles) > 0) return BRECCIA_OK;
+  char length[32];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  return node_error(
+      model->document, node, error,
+      "horizon: no bond joins any of the %lld particle%s within %g %s; choose a longer horizon, or a finer "
+      "spacing",
+      (long long)d->particles->count, d->particles->count == 1 ? "" : "s", d->family.horizon, length);
+}
+
 /** True for a file of `breccia material`: one material, a test or stages, no body. */
 static bool looks_like_test(const Node *root)
 {
@@ -212,6 +230,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
     status =
         domain_begin_under(&model->domain, &model->loading, &model->reader, &spec->initial_stress, &spec->selections);
   if (!status) status = domain_take_loads(&model->domain, &model->loading, &model->reader);
+  if (!status) status = check_bonds(model, error);
   if (status) return status;
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,

@@ -64,12 +64,17 @@ static double without_rounding(double value, double whole)
   return fabs(value) < 1e-12 * whole ? 0 : value;
 }
 
-/** The bond that broke first, and its middle; NULL if none did. */
+/** The bond that broke first, and a place near it inside of the body; NULL if none did.
+ *  @param[out] middle  that of its ends; of ends outside of the body their originals count if both are there, else
+ *  the end inside alone */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
   if (!d->broken_count) return NULL;
   const BrokenBond *bond = &d->broken[0];
-  const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
+  const bool outside[2] = {body_outside(&d->body, bond->a), body_outside(&d->body, bond->b)};
+  int64_t ends[2] = {outside[0] && !outside[1] ? bond->b : bond->a, outside[1] && !outside[0] ? bond->a : bond->b};
+  for (int k = 0; k < 2; ++k) ends[k] = body_original(&d->body, ends[k]);
+  const int32_t a = d->particles->place_of[ends[0]], b = d->particles->place_of[ends[1]];
   for (int k = 0; k < 3; ++k)
     middle[k] = without_rounding((d->particles->position[k][a] + d->particles->position[k][b]) / 2, d->family.horizon);
   return bond;
