@@ -10,7 +10,7 @@ set -eu
 
 build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C_library libfyaml-dev:decks_in_YAML
 libudunits2-dev:units libhdf5-dev:result_files libcairo2-dev:pictures fonts-dejavu-core:words_in_pictures
-gnuplot-nox:curves zlib1g-dev:checksums libsuitesparse-dev:direct_solution_of_equations libarpack2-dev:modes_of_vibration libopenblas0-serial:speed_of_direct_solution"
+gnuplot-nox:curves zlib1g-dev:checksums libmumps-seq-dev:direct_solution_of_equations libarpack2-dev:modes_of_vibration libopenblas0-serial:speed_of_direct_solution"
 test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing lld:quick_linking_of_tests clang-format:layout_of_the_code gcovr:coverage
 python3:external_tests python3-venv:external_tests locales:a_country_with_decimal_commas"
 

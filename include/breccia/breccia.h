@@ -259,6 +259,7 @@ enum {
   BRECCIA_PAGE_DECK,   /* every key of a deck, in Markdown */
   BRECCIA_PAGE_SCHEMA, /* the same as JSON Schema, for editors */
   BRECCIA_PAGE_LAWS,   /* the constitutive laws, in Markdown */
+  BRECCIA_PAGE_BUILD,  /* version, commit, vector lanes, libraries and licence of this build, a line each */
 };
 /** @return the page, for breccia_text_free; NULL when memory is out */
 BRECCIA_API char *breccia_page(int page);

@@ -3,6 +3,7 @@
 #include "constitutive/remote/remote.h"
 #include "deck/spelling.h"
 #include "formulation/formulation.h"
+#include "model/build_page.h"
 #include "model/deck_layout.h"
 #include "model/element_deck.h"
 #include "model/host.h"
@@ -203,7 +204,9 @@ char *breccia_page(int which)
   if (which == BRECCIA_PAGE_LAWS) {
     add_laws(&page);
     add_tests(&page);
-  } else
+  } else if (which == BRECCIA_PAGE_BUILD)
+    build_page_add(&page);
+  else
     add_deck(&page, which == BRECCIA_PAGE_SCHEMA);
   return give_page(&host, &page, NULL);
 }
