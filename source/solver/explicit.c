@@ -105,7 +105,8 @@ static void list_state(Solver *run, StateList *list)
     state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
                      s->domain->particles->places);
   if (s->viscous.time > 0)
-    particles_state_rotations(s->domain->particles, "drag of stiffness", "stress", STATE_TRIED, s->viscous.drag, list);
+    particles_state_rotations(s->domain->particles, "moment of stiffness drag", "stress", STATE_TRIED, s->viscous.drag,
+                              list);
   state_add_number(list, "period", "time", STATE_COMMITTED, &s->period);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
