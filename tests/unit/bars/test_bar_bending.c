@@ -266,7 +266,7 @@ static void threads_and_restarts_give_the_same_bits(void **state)
   for (size_t w = 0; w < count; ++w) {
     solver_of_torn = ways[w].solver;
     bonded_in_torn = ways[w].slips;
-    breccia_model *m = torn_apart(2);
+    breccia_model *m = torn_apart(1);
     const Bars *b = bars_of(m);
     step_surely(m, ways[w].half);
     const int64_t broken = breccia_model_broken_bonds(m);

@@ -18,6 +18,7 @@ static void bars_spend_their_fracture_energy(void **state)
   };
   const int count = under_sanitizers() ? 2 : sizeof bars / sizeof *bars;
   for (int k = 0; k < count; ++k) {
+    if (k % 3 == 1 && !whole_walks()) continue; /* laws and formulations of these are among the others */
     TornBarEnd end;
     breccia_error *error = breccia_error_create();
     const int status = torn_bar_pull(&bars[k], &end, NULL, error);
@@ -51,7 +52,7 @@ static void bonds_near_faces_are_missing_in_a_flat_crack(void **state)
 {
   (void)state;
   const int rows[] = {6, 12};
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < (whole_walks() ? 2 : 1); ++k) {
     const TornBar bar = {"formulation: bond-based",
                          "model: bilinear-softening",
                          "plane stress",

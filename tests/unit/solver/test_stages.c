@@ -191,7 +191,7 @@ static breccia_model *struck_plate(void)
       "materials: {clay: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, "
       "octahedral strength: 30}}\n"
       "body: {plate: {material: clay, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: "
-      "[24, 16]}}}}\n"
+      "[16, 12]}}}}\n"
       "peridynamics: {space: plane stress}\n"
       "failure: {critical stretch: 0.004, near grips: break}\n"
       "loads: [{on: {face: y-, layers: 3}, displacement: [free, 0]}, {gravity: [0, -50]}]\n"
@@ -213,6 +213,7 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
   assert_true(whole->solver.records[0].came_to_rest == 1);
   for (int stage = 0; stage < 3; ++stage)
     for (int at_end = 0; at_end < 2; ++at_end) {
+      if (under_sanitizers() && stage + at_end != 1) continue;
       char folder[] = "/tmp/breccia-XXXXXX", command[64];
       const StageRecord *r = &whole->solver.records[stage];
       assert_non_null(mkdtemp(folder));
