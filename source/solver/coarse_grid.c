@@ -223,7 +223,7 @@ static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double sti
   if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
 }
 
-static void add_elements(CoarseGrid *g, double factor)
+static void add_elements(CoarseGrid *g, double factor, bool linearised)
 {
   const int size = g->axes << g->axes;
   ElementStiffness unit;
@@ -234,7 +234,7 @@ static void add_elements(CoarseGrid *g, double factor)
     double lame = 0, shear = 0;
     for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
       const double weight = factor * g->domain->particles->volume[g->place[n]] / volume;
-      const ElementModuli moduli = element_moduli(g->domain, g->place[n]);
+      const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
       lame += weight * moduli.lame;
       shear += weight * moduli.shear;
     }
@@ -359,13 +359,13 @@ static int factor(CoarseGrid *g, Error *error)
 }
 
 int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, const double *turning,
-                        double stiffness_share, double mass_factor, Error *error)
+                        bool linearised, double stiffness_share, double mass_factor, Error *error)
 {
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
   g->turning = turning;
-  add_elements(g, 1 + stiffness_share);
+  add_elements(g, 1 + stiffness_share, linearised);
   unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
   if (!status) status = library_memory(error);

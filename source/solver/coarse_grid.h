@@ -15,13 +15,14 @@ typedef struct CoarseGrid CoarseGrid;
 CoarseGrid *coarse_grid_create(const Domain *domain, Error *error);
 void coarse_grid_destroy(CoarseGrid **grid);
 
-/** Makes its equations again, of the state at which the domain was linearised, and factors them.
+/** Assembles and factors the equations of the grid.
  *  @param[in] diagonal     [places] stiffness of each particle against being moved alone: how stiffly the grid is held where the particle is;
  *                          infinite: the particle has no part in it. Borrowed until the next time
  *  @param[in] turning      [places] the same against being turned; NULL without rotations
+ *  @param[in] linearised  true: by the tangents at which the domain was linearised; false: by the elastic moduli
  *  @param[in] stiffness_share, mass_factor  as in LinearSolver */
 int coarse_grid_prepare(CoarseGrid *grid, const Unknowns *unknowns, const double *diagonal, const double *turning,
-                        double stiffness_share, double mass_factor, Error *error);
+                        bool linearised, double stiffness_share, double mass_factor, Error *error);
 
 /** Adds to displacements v of all particles what the grid answers to forces f, by the team. Particles turn as the grid does where they are, by half of the
  *  curl of its displacements, and their moments act on it so. */
