@@ -3,6 +3,7 @@
 #include "model/run.h"
 
 #include "results/checkpoint.h"
+#include "solver/distortion.h"
 #include "solver/quasi_static.h"
 #include "solver/reactions.h"
 #include "solver/rest.h"
@@ -375,23 +376,12 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   text_add(t, "\n");
 }
 
-/** Particles of whole families that are turned inside out, as a motion in the wrong unit brings about: laws and formulations know nothing against it. */
+/** Warns of particles that are turned inside out, where a run ends before distortion_watch has looked at them, or does not mind them. */
 static void tell_inverted(const Domain *d, const char *length, Text *t)
 {
   const Particles *p = d->particles;
-  int64_t count = 0;
   int32_t first = 0;
-  for (int32_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    double f[9];
-    const Region *region = domain_region(d, i);
-    if (body_outside(&d->body, n) || domain_damage(d, i) > 0) continue;
-    region->type->gradient(region->formulation, i, f);
-    const double determinant =
-        f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
-    if (determinant > 0) continue;
-    if (!count++) first = i;
-  }
+  const int64_t count = distortion_inverted(d, &first);
   if (count)
     text_add(t,
              "warning: %lld particle%s turned inside out, the first at [%.4g, %.4g, %.4g] %s: no body can be moved so; "
