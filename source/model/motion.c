@@ -95,6 +95,7 @@ static int read_motion(breccia_motion *motion, const breccia_motion_file *file, 
 
 int breccia_motion_load(const breccia_motion_file *given, breccia_motion **out, breccia_error *error)
 {
+  if (host_lacks(out, __func__, "the result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_motion_file file;
   breccia_motion *motion = NULL;
@@ -335,6 +336,7 @@ static int check_length(const breccia_motion *motion, const breccia_motion_wish 
 int breccia_motion_analyse(breccia_motion *motion, const breccia_motion *over, const breccia_motion_wish *given,
                            breccia_error *error)
 {
+  if (host_lacks(motion, __func__, "motion", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_motion below = {0}; /* a history of its own, so that the other motion is only read */
   forget_tables(motion);
@@ -359,6 +361,7 @@ int breccia_motion_analyse(breccia_motion *motion, const breccia_motion *over, c
 
 int breccia_motion_intensity(const breccia_motion *motion, breccia_intensity *intensity)
 {
+  if (!motion || !intensity) return 0;
   return sized_give(intensity, &motion->intensity, sizeof motion->intensity);
 }
 
@@ -369,27 +372,32 @@ static const MotionTable *table_at(const breccia_motion *motion, int table)
 
 const char *breccia_motion_heading(const breccia_motion *motion, int table, int column)
 {
+  if (!motion) return NULL;
   const MotionTable *t = table_at(motion, table);
   return t && column >= 0 && column < t->count ? t->headings[column] : NULL;
 }
 
 const double *breccia_motion_column(const breccia_motion *motion, int table, int column)
 {
+  if (!motion) return NULL;
   return breccia_motion_heading(motion, table, column) ? motion->tables[table].columns[column] : NULL;
 }
 
 int breccia_motion_rows(const breccia_motion *motion, int table)
 {
+  if (!motion) return 0;
   const MotionTable *t = table_at(motion, table);
   return t ? t->rows : 0;
 }
 
 const char *breccia_motion_words(const breccia_motion *motion)
 {
+  if (!motion) return "";
   return text_words(&motion->words);
 }
 
 const char *breccia_motion_files(const breccia_motion *motion)
 {
+  if (!motion) return "";
   return text_words(&motion->files);
 }
