@@ -140,6 +140,15 @@ def number_of(word):
     return word
 
 
+def length_of(word):
+    """The length that a client tells, a finite number above 0; None: it tells none."""
+    try:
+        length = float(word)
+    except (ValueError, OverflowError):
+        return None
+    return length if 0 < length < float("inf") else None
+
+
 class Command:
     """The words of 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'; never evaluated."""
 
@@ -152,10 +161,10 @@ class Command:
         self.kind = words[1]
         if self.kind in PLANE_ONLY:
             raise Refusal(f"{self.kind} knows plane strain only; OpenSees offers no way to drive it from outside")
-        length = number_of(lines.get("length", ""))
-        if "$length" in words and not isinstance(length, (int, float)):
-            raise Refusal("the command asks for $length, and the client told none")
-        self.arguments = [float(length) if word == "$length" else number_of(word) for word in words[3:]]
+        length = length_of(lines.get("length", ""))
+        if "$length" in words and length is None:
+            raise Refusal("the command asks for $length, and the client told none that is a finite number above 0")
+        self.arguments = [length if word == "$length" else number_of(word) for word in words[3:]]
         self.stage = number_of(lines["stage"]) if "stage" in lines else None
         if self.stage not in (None, 0, 1):
             raise Refusal("a stage is 0 (elastic) or 1 (plastic)")

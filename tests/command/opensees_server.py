@@ -170,6 +170,18 @@ def the_point_that_cannot_be_followed_is_named():
     end(process)
 
 
+def lengths_that_are_none_are_refused():
+    process, address = start(stream("lengths"))
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    command = BARS.rstrip() + b" $length\n"
+    for length in (b"1" * 400, b"1e400", b"nan", b"-1", b"0", b"long", b""):
+        line.expect("the client told none that is a finite number above 0", CREATE, command + b"length: " + length + b"\n", 1)
+    line.expect(MADE, CREATE, command + b"length: 0.1\n", 1)
+    stress_is("a client with a length is served", line.pull(0, YIELD_STRAIN), YIELD_STRESS)
+    end(process)
+
+
 def strangers_cannot_speak_for_a_client():
     process, address = start("udp://127.0.0.1:0")
     client, stranger = Line(address), Line(address)
@@ -277,6 +289,7 @@ def main():
         if TCL:  # no point of the other stand-in fails
             the_point_that_cannot_be_followed_is_named()
         if not TCL:  # it listens over TCP only
+            lengths_that_are_none_are_refused()
             strangers_cannot_speak_for_a_client()
             only_sockets_of_their_own_are_removed()
     finally:
