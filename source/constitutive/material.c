@@ -116,7 +116,7 @@ const Section material_section = {.name = "material",
 /** Two histories of an unstrained point, one after the other, or NULL when memory is out. */
 static double *material_begin_twice(const Material *m)
 {
-  double *history = calloc(2 * (size_t)m->history_values + 1, sizeof *history);
+  double *history = memory_plain(2 * (size_t)m->history_values + 1, sizeof *history);
   for (int twin = 0; history && twin < 2 && m->law->begin; ++twin)
     m->law->begin(m->constants, history + twin * (ptrdiff_t)m->history_values);
   return history;
