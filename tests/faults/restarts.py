@@ -9,6 +9,7 @@ usage: restarts.py COMMAND COMPARE_RESULTS [--cases N] [--stops N] [--seed K] [-
   --stops N    so many stops in each case, one of them at the end of a stage (0: at every step)
   --seed K     of what is drawn (1)
   --body NAME, --solvers LETTERS  one body of BODIES, one sequence of SOLVERS, like "SER"
+  BRECCIA_WHOLE=1 in the environment asks for all cases
 """
 import argparse
 import concurrent.futures
@@ -162,7 +163,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("command", type=os.path.abspath)
     parser.add_argument("compare", type=os.path.abspath)
-    parser.add_argument("--cases", type=int, default=12)
+    parser.add_argument("--cases", type=int, default=0 if os.environ.get("BRECCIA_WHOLE") else 12)
     parser.add_argument("--stops", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--body", choices=BODIES)
