@@ -26,7 +26,8 @@ int64_t distortion_inverted(const Domain *d, int32_t *first)
   return count;
 }
 
-/** Returns true if the law of a particle may carry next to nothing, so that nothing hinders the particle from being turned inside out. */
+/** Returns true if the law of a particle may carry next to nothing, so that nothing hinders the particle from being
+ *  turned inside out. */
 static bool distortion_may_be_spent(const Domain *d, int32_t place)
 {
   const double most = 0.5; /* damage */
