@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -89,7 +89,7 @@ check-format:
 # The whole suite under the address and undefined-behaviour sanitizers.
 asan:
 	@sh scripts/setup.sh test
-	@sh scripts/tests.sh asan-ubsan $(TESTS)
+	@SAMPLE=$(SAMPLE) sh scripts/tests.sh asan-ubsan $(TESTS)
 
 # What works on several threads, under clang's thread sanitizer. It wants addresses where it looks for them: setarch, where that is allowed.
 tsan:
@@ -101,8 +101,12 @@ arm64_tests := test_golden test_elastic_first test_bar test_faces test_many test
 arm64:
 	@sh scripts/arm64.sh
 	@cmake --preset arm64 > /dev/null
-	@cmake --build --preset arm64 --target breccia_command $(arm64_tests) --parallel $(cores)
+	@cmake --build --preset arm64 --target breccia_command $(addprefix tests_of_,$(arm64_tests)) --parallel $(cores)
 	@ctest --preset arm64 --parallel $(jobs) -R '^($(subst $() ,|,$(arm64_tests)))$$'
+
+# Builds the program and runs all tests on Debian 13, in a system of its own (scripts/debian13.sh); needs root or sudo.
+debian13:
+	@sh scripts/debian13.sh make test TESTS="$(TESTS)"
 
 coverage:
 	@sh scripts/setup.sh test

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds and runs tests, and prints the ten that took longest.
 #   tests.sh PRESET [LABEL ...]   PRESET: one of CMakePresets.json; LABEL: a matter or the name of a test (tests/CMakeLists.txt); none: all tests
+# SAMPLE=1 leaves out tests with the label `long`.
 set -eu
 preset=$1
 shift
@@ -14,7 +15,7 @@ done
 cmake --build --preset "$preset" --parallel "$cores" ${targets:+--target $targets}
 status=0
 # One test more than there are cores: some wait for sockets and servers.
-ctest --preset "$preset" --parallel $((cores + 1)) --no-tests=error --output-junit tests.xml ${labels:+-L "^($labels)\$"} || status=$?
+ctest --preset "$preset" --parallel $((cores + 1)) --no-tests=error --output-junit tests.xml ${labels:+-L "^($labels)\$"} ${SAMPLE:+-LE '^long$'} || status=$?
 echo "ten slowest tests, in seconds beside others:"
 sed -n 's/.*<testcase name="\([^"]*\)".* time="\([0-9.]*\)".*/\2 \1/p' "$folder/tests.xml" | sort -rn | head -10 |
   while read -r seconds name; do printf '  %6.1f  %s\n' "$seconds" "$name"; done

@@ -38,18 +38,44 @@ ERROR, ANSWER = 0x7F, 0x80
 COMMITS_BEFORE, WANTS_TANGENT = 1, 2
 
 # Factories that take no strain themselves: a copy inside this wrapper does.
-WRAPPED = {"ElasticIsotropic", "J2Plasticity", "DruckerPrager", "ManzariDafalias", "BoundingCamClay"}
-# How the elastic or plastic stage is told, by kind: parameter number, and whether it is an integer.
-STAGES = {
-    "PressureIndependMultiYield": (1, True),
-    "PressureDependMultiYield": (1, True),
-    "PressureDependMultiYield02": (1, True),
-    "J2CyclicBoundingSurface": (1, True),
-    "ManzariDafalias": (5, False),
-    "BoundingCamClay": (5, False),
+WRAPPED = {
+    "ElasticIsotropic",
+    "J2Plasticity",
+    "DruckerPrager",
+    "ManzariDafalias",
+    "SAniSandMS",
+    "BoundingCamClay",
+    "CycLiqCP",
+    "CycLiqCPSP",
 }
-# Two strains only: driven by six they write where they should not.
-PLANE_ONLY = {"PM4Sand", "PM4Silt"}
+# Materials that have an elastic and a plastic stage (setParameter and updateParameter of SRC/material/nD in OpenSees, commit 2890cb36): the number of
+# the parameter, whether it is an integer, and the stage in which a material begins. Those that begin elastically stay so until somebody
+# sets their stage, so that a client has to say it. Most others keep the stage once for all points of a process, where a session
+# before may have left the other one: it is always set.
+STAGES = {
+    "PressureIndependMultiYield": (1, True, 0),
+    "PressureDependMultiYield": (1, True, 0),
+    "PressureDependMultiYield02": (1, True, 0),
+    "PressureDependMultiYield03": (1, True, 0),
+    "CycLiqCP": (1, True, 0),
+    "CycLiqCPSP": (1, True, 0),
+    "J2CyclicBoundingSurface": (1, True, 1),
+    "ManzariDafalias": (5, False, 1),
+    "SAniSandMS": (5, False, 1),
+    "BoundingCamClay": (5, False, 1),
+}
+# Materials that cannot be driven as they are meant, and why. Those in a plane take three strains: driven by six they write where they should not.
+PLANE_ONLY = "knows plane strain only; OpenSees offers no way to drive it from outside"
+PORE_PRESSURE = "takes pore pressures from elements of OpenSees, which a server has none of, and would not liquefy: take PySimple1, TzSimple1 or QzSimple1"
+UNDRIVEN = {
+    "PM4Sand": PLANE_ONLY,
+    "PM4Silt": PLANE_ONLY,
+    "StressDensityModel": "begins elastically, and OpenSees offers no way to set its stage from outside: take PressureDependMultiYield03 or ManzariDafalias",
+    "FluidSolidPorous": "is made of another material by its tag, which a server does not have: take the command of the soil, with its undrained bulk modulus",
+    "PyLiq1": PORE_PRESSURE,
+    "TzLiq1": PORE_PRESSURE,
+    "QzLiq1": PORE_PRESSURE,
+}
 # Names of kinds for planes, plates, beams and interfaces.
 NOT_IN_SPACE = re.compile("plane|plate|beam|contact|2d|PM4|FSAM|Mcft|SmearedSteel", re.IGNORECASE)
 PROBE_TAG, BASE_OFFSET = 2_000_000_000, 1_000_000_000
@@ -140,6 +166,15 @@ def number_of(word):
     return word
 
 
+def length_of(word):
+    """The length that a client tells, a finite number above 0; None: it tells none."""
+    try:
+        length = float(word)
+    except (ValueError, OverflowError):
+        return None
+    return length if 0 < length < float("inf") else None
+
+
 class Command:
     """The words of 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'; never evaluated."""
 
@@ -150,17 +185,24 @@ class Command:
             raise Refusal("a command is 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'")
         self.uniaxial = words[0] == "uniaxialMaterial"
         self.kind = words[1]
-        if self.kind in PLANE_ONLY:
-            raise Refusal(f"{self.kind} knows plane strain only; OpenSees offers no way to drive it from outside")
-        length = number_of(lines.get("length", ""))
-        if "$length" in words and not isinstance(length, (int, float)):
-            raise Refusal("the command asks for $length, and the client told none")
-        self.arguments = [float(length) if word == "$length" else number_of(word) for word in words[3:]]
+        if self.kind in UNDRIVEN:
+            raise Refusal(f"{self.kind} {UNDRIVEN[self.kind]}")
+        length = length_of(lines.get("length", ""))
+        if "$length" in words and length is None:
+            raise Refusal("the command asks for $length, and the client told none that is a finite number above 0")
+        self.arguments = [length if word == "$length" else number_of(word) for word in words[3:]]
         self.stage = number_of(lines["stage"]) if "stage" in lines else None
         if self.stage not in (None, 0, 1):
             raise Refusal("a stage is 0 (elastic) or 1 (plastic)")
-        if self.stage is not None and self.kind not in STAGES:
-            raise Refusal(f"{self.kind} has no stages: leave 'stage' out")
+        if self.kind not in STAGES:
+            if self.stage is not None:
+                raise Refusal(f"{self.kind} has no stages: leave 'stage' out")
+        elif self.stage is None:
+            self.stage = STAGES[self.kind][2]
+            if not self.stage:
+                raise Refusal(
+                    f"{self.kind} stays elastic until its stage is set: give 'stage: 1' (plastic) beside the command, or 'stage: 0' (elastic)"
+                )
 
 
 class Points:
@@ -191,7 +233,7 @@ class Points:
         if base != tag:
             ops.nDMaterial("InitStrain", tag, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if command.stage is not None:
-            number, whole = STAGES[command.kind]
+            number, whole, _ = STAGES[command.kind]
             if whole:
                 ops.NDTest("UpdateIntegerParameter", base, number, command.stage)
             else:
@@ -402,8 +444,9 @@ def offered_laws(points, program):
 
         made = in_a_child(probe) or "it ends the process of OpenSees"
         yield "tried", f"{text}; {'' if stage is None else f'stage: {stage}; '}stress unit: {unit}; {made}"
-    yield "space", " ".join(kind for kind in known_kinds(points.ops, points.words, "nDMaterial") if not NOT_IN_SPACE.search(kind))
-    yield "uniaxial", " ".join(known_kinds(points.ops, points.words, "uniaxialMaterial"))
+    space, uniaxial = (known_kinds(points.ops, points.words, command) for command in ("nDMaterial", "uniaxialMaterial"))
+    yield "space", " ".join(kind for kind in space if kind not in UNDRIVEN and not NOT_IN_SPACE.search(kind))
+    yield "uniaxial", " ".join(kind for kind in uniaxial if kind not in UNDRIVEN)
 
 
 class Server:

@@ -7,6 +7,8 @@
 # OpenSees deletes its many commands and makes them again with each model, even those of its names that stand in a namespace: none here is called as one of its own.
 namespace eval server {
   variable MAGIC BRMS
+  # Materials whose liquefaction is a stage that pore pressures of elements drive (updateMaterialStage of OpenSees): without them they would not liquefy.
+  variable UNDRIVEN {PyLiq1 TzLiq1 QzLiq1}
   variable VERSION 1
   variable MOST_PAYLOAD [expr {1 << 28}]
   variable MOST_POINTS 1000000
@@ -46,6 +48,10 @@ proc server::parseCommand {lines} {
   }
   if {$command ne "uniaxialMaterial" || $tag ne "\$tag" || ![regexp {^[A-Za-z0-9_]+$} $kind]} {
     refuse "a command is 'uniaxialMaterial KIND \$tag ...'"
+  }
+  variable UNDRIVEN
+  if {$kind in $UNDRIVEN} {
+    refuse "$kind takes pore pressures from elements of OpenSees, which a server has none of, and would not liquefy: take PySimple1, TzSimple1 or QzSimple1"
   }
   if {[dict exists $lines stage]} {
     refuse "$kind has no stages: leave 'stage' out"

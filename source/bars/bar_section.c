@@ -1,6 +1,7 @@
 /* Bars as decks have them: their keys, the nodes of their lines, and what a body does not take. */
 #include "bars/bars.h"
 
+#include "base/memory.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -152,6 +153,7 @@ static double distance(const Body *body, int32_t place, const double point[3])
 
 static double spacing_at(const Body *body, const double point[3])
 {
+  if (body->block_count == 1) return body->lattices[0].spacing;
   return body->lattices[body->particles.block[body_nearest(body, point) / SLICE]].spacing;
 }
 
@@ -223,8 +225,10 @@ static int check_line(const BarSpec *bar, const ForcesParts *parts, const char *
   const int64_t count = bar_nodes(bar, body, &nodes);
   int status = count < 0 ? error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars") : BRECCIA_OK;
   for (int64_t n = 0; n < count && !status; ++n) {
-    const double *x = nodes + 3 * n, away = distance(body, body_nearest(body, x), x) / spacing_at(body, x);
-    if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][body_nearest(body, x)]) > 0)
+    const double *x = nodes + 3 * n;
+    const int32_t near = body_nearest(body, x);
+    const double away = distance(body, near, x) / body->lattices[body->particles.block[near / SLICE]].spacing;
+    if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][near]) > 0)
       status = node_error(parts->reader->document, section_node(bar, key), parts->reader->error,
                           "%s: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only", key,
                           bar->head.name, x[2]);
@@ -286,30 +290,53 @@ static int check_served(const BarSpec *bar, const Material *m, const ForcesParts
   return BRECCIA_OK;
 }
 
-/** Lines of a bar that is repeated are told apart by a number behind its name; a bar of such a name could not be told from them. */
-static int check_name(const BarLines *lines, int deck_bar, const ForcesParts *parts)
+/** Names of the lines of bars with 'repeat', in alphabetical order. */
+typedef struct RepeatedNames {
+  const char **items; /* [count] owned, the names borrowed */
+  size_t count;
+} RepeatedNames;
+
+static int compare_names(const void *a, const void *b)
 {
-  const BarSpec *bar = lines->deck->items[deck_bar];
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/** Lists the names of repeated lines. @return false: memory is out */
+static bool repeated_names_create(RepeatedNames *names, const BarLines *lines)
+{
+  *names = (RepeatedNames){.items = memory_plain((size_t)lines->specs.count + 1, sizeof *names->items)};
+  if (!names->items) return false;
   for (int n = 0; n < lines->specs.count; ++n) {
-    const BarSpec *other = lines->specs.items[n];
-    if (other->repeat.count && !strcmp(other->head.name, bar->head.name))
-      return node_error(parts->reader->document, bar->head.node, parts->reader->error,
-                        "bars: '%s' is also the name of a line of a bar with 'repeat'; call it otherwise",
-                        bar->head.name);
+    const BarSpec *bar = lines->specs.items[n];
+    if (bar->repeat.count) names->items[names->count++] = bar->head.name;
   }
-  return BRECCIA_OK;
+  qsort(names->items, names->count, sizeof *names->items, compare_names);
+  return true;
+}
+
+/** Lines of a bar that is repeated are told apart by a number behind its name; a bar of such a name could not be told from them. */
+static int check_name(const RepeatedNames *names, const BarSpec *bar, const ForcesParts *parts)
+{
+  if (!bsearch(&bar->head.name, names->items, names->count, sizeof *names->items, compare_names)) return BRECCIA_OK;
+  return node_error(parts->reader->document, bar->head.node, parts->reader->error,
+                    "bars: '%s' is also the name of a line of a bar with 'repeat'; call it otherwise", bar->head.name);
 }
 
 int bars_check(const void *spec, const ForcesParts *parts)
 {
   const SectionList *list = spec;
   BarLines lines;
+  RepeatedNames names;
   int status = BRECCIA_OK;
   if (!bar_lines_create(&lines, list)) return error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars");
+  if (!repeated_names_create(&names, &lines)) {
+    bar_lines_destroy(&lines);
+    return error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars");
+  }
   for (int n = 0; n < list->count; ++n) {
     const BarSpec *bar = list->items[n];
     const Material *m = bar_material(bar, parts);
-    int bad = check_name(&lines, n, parts);
+    int bad = check_name(&names, bar, parts);
     if (!bad) bad = check_lines(&lines, n, parts);
     if (m && m->remote && !bad) bad = check_served(bar, m, parts);
     if (m && m->law->components != 1 && !material_is_hookean(m))
@@ -319,6 +346,7 @@ int bars_check(const void *spec, const ForcesParts *parts)
                        bar->material, m->law_name);
     if (bad) status = bad;
   }
+  free(names.items);
   bar_lines_destroy(&lines);
   return status;
 }

@@ -8,11 +8,10 @@
 #include <unistd.h>
 #include <zlib.h>
 
-int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes)
+int checksum_of_descriptor(int file, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes)
 {
   enum { PIECE = 1 << 18 }; /* stays in the cache */
-  const int file = text_open_file(path);
-  unsigned char *piece = file < 0 ? NULL : memory_plain(PIECE, 1);
+  unsigned char *piece = memory_plain(PIECE, 1);
   int64_t n = piece ? 0 : -1;
   uLong crc = crc32(0, NULL, 0);
   *bytes = 0;
@@ -23,10 +22,19 @@ int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum
   }
   const int problem = errno;
   free(piece);
-  if (file >= 0) close(file);
   *sum = (uint32_t)crc;
   errno = problem;
   return n != 0;
+}
+
+int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes)
+{
+  const int file = text_open_file(path);
+  if (file < 0) return 1;
+  const int bad = checksum_of_descriptor(file, from, most, sum, bytes), cause = errno;
+  close(file);
+  errno = cause;
+  return bad;
 }
 
 uint32_t checksum_of(const void *bytes, size_t size)

@@ -12,6 +12,9 @@
  *  @return 0, or 1 with errno set */
 int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes);
 
+/** Computes the same checksum of a file that is open. @param[in] file  descriptor, open for reading */
+int checksum_of_descriptor(int file, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes);
+
 /** The same of bytes in memory. */
 uint32_t checksum_of(const void *bytes, size_t size);
 /** Of bytes that follow others. @param[in] sum  of those; 0 where there are none */

@@ -22,6 +22,14 @@ static int make_one(const char *path, Error *error)
                    cause == EEXIST ? "it is a link that leads nowhere" : strerror(cause));
 }
 
+int folder_make_inside(const char *path, Error *error)
+{
+  struct stat found;
+  if (!lstat(path, &found) && S_ISLNK(found.st_mode))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: the folder cannot be made: it is a link; remove it", path);
+  return folder_make(path, error);
+}
+
 int folder_make(const char *path, Error *error)
 {
   char *part = text_format("%s", path);

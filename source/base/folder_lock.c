@@ -1,5 +1,6 @@
 #include "base/folder_lock.h"
 
+#include "base/regular_file.h"
 #include "base/text.h"
 #include "breccia/breccia.h"
 #include <errno.h>
@@ -38,10 +39,9 @@ int folder_lock_take(FolderLock *lock, const char *folder, Error *error)
   if (!lock->path) return error_add(error, BRECCIA_FAILURE, "out of memory: lock of %s", folder);
   for (;;) {
     /* Closed in programs that are started: what outlives us must not hold it. A link is not followed: the file it leads to is somebody's. */
-    lock->descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    lock->descriptor = regular_file_open(lock->path, O_RDWR | O_CREAT);
     if (lock->descriptor < 0)
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", lock->path,
-                       errno == ELOOP ? "it is a link; remove it" : strerror(errno));
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", lock->path, regular_file_problem(errno));
     int held;
     do held = flock(lock->descriptor, LOCK_EX | LOCK_NB);
     while (held && errno == EINTR);

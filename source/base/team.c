@@ -11,6 +11,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A thread looks for about as long as it takes to wake one that sleeps: then it never loses more than twice what the better of the two
  * would have cost. Where looking was in vain the next look is shorter. */
@@ -26,6 +27,7 @@ struct Team {
   void *context;
   Trap *trap; /* that work is done under; NULL: none */
   bool ends;
+  pid_t process; /* that has the threads */
   pthread_mutex_t lock;
   pthread_cond_t changed;
   _Alignas(64) atomic_uint round;   /* of work given out */
@@ -165,6 +167,7 @@ Team *team_create(int threads, Error *error)
   pthread_mutex_init(&team->lock, NULL);
   pthread_cond_init(&team->changed, NULL);
   team->threads = threads;
+  team->process = getpid();
   team->patient = threads <= cores_available();
   team->thread = memory_zeroed((size_t)threads, sizeof *team->thread, "threads", error);
   team->places = memory_zeroed((size_t)threads, sizeof *team->places, "threads", error);
@@ -177,11 +180,13 @@ void team_destroy(Team **out)
   Team *team = *out;
   *out = NULL;
   if (!team) return;
-  team->ends = true;
-  change(team, &team->round);
-  for (int k = 0; k < team->started; ++k) pthread_join(team->thread[k], NULL);
-  pthread_cond_destroy(&team->changed);
-  pthread_mutex_destroy(&team->lock);
+  if (!team_is_foreign(team)) { /* after a fork nobody is there to be waited for, and the lock may be held for ever */
+    team->ends = true;
+    change(team, &team->round);
+    for (int k = 0; k < team->started; ++k) pthread_join(team->thread[k], NULL);
+    pthread_cond_destroy(&team->changed);
+    pthread_mutex_destroy(&team->lock);
+  }
   free(team->thread);
   free(team->places);
   free(team);
@@ -190,6 +195,11 @@ void team_destroy(Team **out)
 int team_threads(const Team *team)
 {
   return team ? team->threads : 1;
+}
+
+bool team_is_foreign(const Team *team)
+{
+  return team && team->started > 0 && team->process != getpid();
 }
 
 Team *team_use(Team *team)

@@ -2,6 +2,7 @@
 
 #include "base/file_bytes.h"
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "breccia/breccia.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -14,14 +15,14 @@ int whole_file_write(const char *path, const Text *words, Error *error)
 {
   char *part = words->failed ? NULL : text_format("%s.part", path);
   if (!part) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: out of memory", path);
-  FILE *file = fopen(part, "w");
+  FILE *file = regular_file_stream(part, "w");
   int cause = file ? 0 : errno;
   if (file && fwrite(text_words(words), 1, words->length, file) != words->length) cause = errno;
   if (file && fclose(file) && !cause) cause = errno;
   if (!cause && rename(part, path)) cause = errno;
   if (cause) {
     if (file) remove(part);
-    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(cause));
+    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, regular_file_problem(cause));
   }
   free(part);
   return cause ? BRECCIA_FAILURE : BRECCIA_OK;
@@ -30,7 +31,8 @@ int whole_file_write(const char *path, const Text *words, Error *error)
 int whole_file_copy(const char *from, const char *to)
 {
   enum { PIECE = 1 << 20 };
-  const int in = open(from, O_RDONLY), out = in < 0 ? -1 : open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  const int in = regular_file_open(from, O_RDONLY),
+            out = in < 0 ? -1 : regular_file_open(to, O_WRONLY | O_CREAT | O_TRUNC);
   int cause = out < 0 ? errno : 0;
   char *buffer = memory_plain(PIECE, 1);
   if (!buffer) cause = ENOMEM;
@@ -54,7 +56,7 @@ int file_settle(int descriptor)
 
 int path_settle(const char *path)
 {
-  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const int bad = file < 0 || file_settle(file);
   const int cause = errno;
   if (file >= 0) close(file);

@@ -94,12 +94,38 @@ static int occupy_lattice(Body *body, int b, Filling *filling, int64_t *slices, 
   return BRECCIA_OK;
 }
 
+/** Refuses a thickness (of a bar an area) beside volumes in a file that belong to another one: of particles that have
+ *  one volume, which is that of their lattice cell times another thickness. Volumes that differ from each other, and
+ *  a few equal ones (10, or 100 beside other blocks), may be those of masses: they tell nothing.
+ *  @param[in] alone  the body has no other block */
+static int check_thickness(const BlockSpec *block, const Lattice *lattice, const Cloud *cloud, bool alone,
+                           const DeckReader *reader)
+{
+  const double share = 0.5, near = 0.01, most = 1.25;
+  const int64_t few = 100;
+  const char *key = lattice->dimensions == 2 ? "thickness" : "area";
+  const double given = lattice->dimensions == 2 ? block->thickness : block->area;
+  double largest = 0, cell = 1;
+  int64_t alike = 0;
+  if (lattice->dimensions == 3 || cloud->count < (alone ? 10 : few)) return BRECCIA_OK;
+  for (int k = 0; k < lattice->dimensions; ++k) cell *= lattice->unit.size[k];
+  for (int64_t n = 0; n < cloud->count; ++n) largest = fmax(largest, cloud->volume[n]);
+  for (int64_t n = 0; n < cloud->count; ++n) alike += cloud->volume[n] >= (1 - near) * largest;
+  const double told = largest / cell;
+  if ((double)alike < share * (double)cloud->count || (told < most * given && told * most > given)) return BRECCIA_OK;
+  return node_error(reader->document, section_node(block, key), reader->error,
+                    "%s: %g contradicts the volumes in '%s': %g with a spacing of %g makes %g; expected volumes and "
+                    "%s of one body: mend the one that is wrong",
+                    key, given, block->file, largest, lattice->spacing, told, key);
+}
+
 static int occupy_cloud(Body *body, int b, const DeckReader *reader, Filling *filling, int64_t *slices, int64_t *count)
 {
   const BlockSpec *block = body->blocks[b];
   const Lattice *lattice = &body->lattices[b];
   Cloud *cloud = &filling->cloud;
   int status = cloud_read(cloud, reader, section_node(block, "file"), block->file, lattice->dimensions);
+  if (!status) status = check_thickness(block, lattice, cloud, body->block_count == 1, reader);
   if (status) return status;
   uint8_t *gone = memory_zeroed((size_t)cloud->count, 1, "particles", reader->error);
   if (!gone) return BRECCIA_FAILURE;

@@ -4,6 +4,7 @@
 #include "verbs.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -40,12 +41,28 @@ bool cases_body_failed(const breccia_study *study, int k)
   return breccia_study_figure(study, k, "failed_step", &step) != 0;
 }
 
+FILE *cases_open_file(const char *path, bool append)
+{
+  const int flags = O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | (append ? O_APPEND : 0),
+            number = open(path, flags, 0666);
+  struct stat status;
+  if (number < 0) return NULL;
+  int cause = fstat(number, &status) ? errno : S_ISREG(status.st_mode) ? 0 : ESPIPE;
+  if (!cause && !append && ftruncate(number, 0)) cause = errno;
+  FILE *file = cause ? NULL : fdopen(number, append ? "a" : "w");
+  if (file) return file;
+  if (!cause) cause = errno;
+  close(number);
+  errno = cause;
+  return NULL;
+}
+
 /** Runs a case to its end. What `breccia run` would print goes into a file beside its results. @return exit status */
 static int run_case(const CaseWork *work, int k, const breccia_case *one, bool restart)
 {
   char path[PATH_MAX];
   const bool fits = snprintf(path, sizeof path, "%s/log.txt", one->folder) < (int)sizeof path;
-  FILE *log = fits && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
+  FILE *log = fits && (!mkdir(one->folder, 0777) || errno == EEXIST) ? cases_open_file(path, restart) : NULL;
   if (!log) {
     complain("%s: cannot be written: %s", path, strerror(fits ? errno : ENAMETOOLONG));
     return BRECCIA_USER_ERROR;

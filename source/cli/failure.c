@@ -189,7 +189,7 @@ static void print_trials(const Search *s, FILE *out, bool commas)
 static int write_table(const Search *s)
 {
   char *path = words_of("%s/failure.csv", s->folder);
-  FILE *file = path ? fopen(path, "w") : NULL;
+  FILE *file = path ? cases_open_file(path, false) : NULL;
   if (file) print_trials(s, file, true);
   const bool bad = !file || ferror(file);
   const int closed = file ? fclose(file) : 0;

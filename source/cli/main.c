@@ -222,8 +222,14 @@ static int obey(int argc, char **argv)
     return argc > 1 ? 0 : 2;
   }
   if (!strcmp(word, "--version")) {
-    printf("breccia %s\n", BRECCIA_VERSION);
-    return 0;
+    char *page = breccia_page(BRECCIA_PAGE_BUILD);
+    const int status = page ? 0 : 1;
+    if (page)
+      fputs(page, stdout);
+    else
+      complain("breccia: out of memory: the page of the build");
+    breccia_text_free(page);
+    return status;
   }
   if (help) word = argv[2];
   for (; verbs[count]; ++count) {

@@ -57,7 +57,7 @@ bool driver_try(Driver *d, const double *strain)
     batch.strain[k] = &d->strain[k];
     batch.stress[k] = &d->stress[k];
   }
-  return d->material->law->update(d->material->constants, &batch) < 0;
+  return material_update(d->material, &batch) < 0;
 }
 
 void driver_commit(Driver *d)

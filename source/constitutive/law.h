@@ -2,8 +2,10 @@
 #ifndef BRECCIA_CONSTITUTIVE_LAW_H
 #define BRECCIA_CONSTITUTIVE_LAW_H
 
+#include "base/error.h"
 #include "base/text.h"
 #include "breccia/breccia.h"
+#include <stdbool.h>
 
 /** Built-in laws and those that a program brought along. */
 typedef struct LawList {
@@ -14,6 +16,9 @@ typedef struct LawList {
 /** @return the k-th law, own ones last, or NULL after the last; `list` may be NULL */
 const breccia_law *law_at(const LawList *list, int k);
 const breccia_law *law_find(const LawList *list, const char *name);
+
+/** Refuses a law of a program whose tables or functions are not whole, before any of them is used. @return true after a message */
+bool law_refuse(const breccia_law *law, Error *error);
 
 /** Adds which law was probably meant by a name that is none, or the names of all. */
 void law_advice(const LawList *list, const char *given, Text *text);

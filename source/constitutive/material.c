@@ -70,7 +70,9 @@ static const Field material_fields[] = {
      .offset = offsetof(MaterialSpec, stage),
      .standard = "",
      .range = "[0, 1]",
-     .meaning = "of laws that begin elastically in a server: 0 elastic, 1 plastic"},
+     .meaning =
+         "of laws with stages in a server: 0 elastic, 1 plastic. Those of OpenSees that begin elastically, such as "
+         "PressureIndependMultiYield, are refused without it"},
     {.key = "stress unit",
      .kind = FIELD_TEXT,
      .offset = offsetof(MaterialSpec, stress_unit),
@@ -113,6 +115,67 @@ const Section material_section = {.name = "material",
                                   .chooser = "model",
                                   .parameters_offset = offsetof(MaterialSpec, values)};
 
+/** Two histories of an unstrained point, one after the other, or NULL when memory is out. */
+static double *material_begin_twice(const Material *m)
+{
+  double *history = memory_plain(2 * (size_t)m->history_values + 1, sizeof *history);
+  for (int twin = 0; history && twin < 2 && m->law->begin; ++twin)
+    m->law->begin(m->constants, history + twin * (ptrdiff_t)m->history_values);
+  return history;
+}
+
+/** Asks a law for the stress of one unstrained point.
+ *  @param[in] history  of material_begin_twice
+ *  @param[out] reason  if the law does not integrate the point, or writes no numbers
+ *  @return true if there is a stress */
+static bool material_answers(const Material *m, double *history, char *reason, size_t size)
+{
+  double none[6] = {0}, stress[6];
+  breccia_batch one = {.size = sizeof one, .count = 1, .committed = history, .trial = history + m->history_values};
+  for (int k = 0; k < 6; ++k) {
+    one.strain[k] = k < m->law->components ? &none[k] : NULL;
+    one.stress[k] = k < m->law->components ? &stress[k] : NULL;
+    stress[k] = NAN;
+  }
+  const int bad = m->law->update(m->constants, &one);
+  bool finite = true;
+  for (int k = 0; k < m->law->components; ++k) finite &= isfinite(stress[k]) != 0;
+  if (bad < -1 || bad > 0)
+    snprintf(reason, size, "its 'update' returned %d for a batch of one point; expected -1, or the index 0", bad);
+  else if (bad == 0)
+    snprintf(reason, size, "its 'update' cannot integrate a point without strain");
+  else if (!finite)
+    snprintf(reason, size, "its 'update' writes no finite stress for a point without strain");
+  return bad == -1 && finite;
+}
+
+/** Looks whether a law keeps what the interface asks of it, as far as one point tells. @param[out] reason  if it does not
+ *  @return BRECCIA_OK, or status */
+static int material_examine(const Material *m, char *reason, size_t size)
+{
+  enum { MOST_VALUES = 1000000 };
+  if (!(m->bulk > 0 && m->shear > 0 && isfinite(m->bulk) && isfinite(m->shear))) {
+    snprintf(reason, size, "its 'moduli' are %g and %g; expected two numbers above 0", m->bulk, m->shear);
+    return BRECCIA_USER_ERROR;
+  }
+  if (m->history_values < 0 || m->history_values > MOST_VALUES) {
+    snprintf(reason, size, "its 'history_values' is %d; expected 0 to %d", m->history_values, MOST_VALUES);
+    return BRECCIA_USER_ERROR;
+  }
+  double *history = material_begin_twice(m);
+  if (!history) {
+    snprintf(reason, size, "out of memory");
+    return BRECCIA_FAILURE;
+  }
+  const bool pure = !memcmp(history, history + m->history_values, sizeof(double) * (size_t)m->history_values),
+             answers = pure && material_answers(m, history, reason, size);
+  if (!pure)
+    snprintf(reason, size,
+             "its 'begin' writes another history when it is called again; expected the same numbers at every call");
+  free(history);
+  return answers ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size)
 {
   *material = (Material){
@@ -121,9 +184,11 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
   }
+  *reason = 0;
   if (law->components != 1 && law->components != 6)
     snprintf(reason, size, "the law says that it takes %d strains; there are 6 in space, or 1", law->components);
   if ((law->components != 1 && law->components != 6) || law->prepare(values, material->constants, reason, size)) {
+    if (!*reason) snprintf(reason, size, "its 'prepare' refuses the parameters and gives no reason");
     free(material->constants); /* which were not made, so that there is nothing to release */
     *material = (Material){0};
     return BRECCIA_USER_ERROR;
@@ -131,7 +196,9 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   law->moduli(material->constants, &material->bulk, &material->shear);
   if (law->softening_energy) material->softening_energy = law->softening_energy(material->constants);
   material->history_values = law->history_values ? law->history_values(material->constants) : 0;
-  return BRECCIA_OK;
+  const int status = material_examine(material, reason, size);
+  if (status) material_destroy(material);
+  return status;
 }
 
 /** Which parameter of a law is the length over which a fracture energy is spread, or -1. */
@@ -337,13 +404,10 @@ double material_poisson(const Material *material)
 
 bool material_has_tangent(const Material *m)
 {
-  double none[6] = {0}, stress[6], tangent[36], *history = calloc(2 * (size_t)m->history_values + 1, sizeof *history);
+  double none[6] = {0}, stress[6], tangent[36], *history = m->remote ? NULL : material_begin_twice(m);
   const int numbers = m->law->components == 6 ? 36 : 1;
   breccia_batch one = {.size = sizeof one, .count = 1, .tangent = tangent};
-  if (m->remote || !history) {
-    free(history);
-    return true; /* what lacks memory is told by those who need more of it */
-  }
+  if (!history) return true; /* what lacks memory is told by those who need more of it */
   for (int k = 0; k < 6; ++k) {
     one.strain[k] = &none[k];
     one.stress[k] = &stress[k];
@@ -351,9 +415,7 @@ bool material_has_tangent(const Material *m)
   for (int k = 0; k < numbers; ++k) tangent[k] = NAN;
   one.committed = history;
   one.trial = history + m->history_values;
-  for (int twin = 0; twin < 2 && m->law->begin; ++twin)
-    m->law->begin(m->constants, history + twin * (ptrdiff_t)m->history_values);
-  const bool gave_up = m->law->update(m->constants, &one) >= 0;
+  const bool gave_up = material_update(m, &one) >= 0;
   bool told = true;
   for (int k = 0; k < numbers && !gave_up; ++k) told &= isfinite(tangent[k]) != 0;
   free(history);
@@ -373,7 +435,7 @@ bool material_is_hookean(const Material *m)
       one.stress[k] = &stress[k];
     }
     strain[n] = 1;
-    hookean &= m->law->update(m->constants, &one) < 0;
+    hookean &= material_update(m, &one) < 0;
     for (int k = 0; k < 6; ++k) {
       const double expected = (k < 3 && n < 3 ? lame : 0) + (k == n ? (k < 3 ? 2 : 1) * m->shear : 0);
       hookean &= fabs(stress[k] - expected) <= close;

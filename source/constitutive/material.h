@@ -51,6 +51,14 @@ int material_from_words(Material *material, const breccia_law *law, const char *
                         const Units *units, const char *before, Error *error);
 void material_destroy(Material *material);
 
+/** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.
+ *  @return -1, or a point of the batch that could not be integrated */
+static inline int material_update(const Material *material, const breccia_batch *batch)
+{
+  const int bad = material->law->update(material->constants, batch);
+  return bad >= -1 && bad < batch->count ? bad : 0;
+}
+
 /** Young's modulus and Poisson's ratio of the undamaged material. */
 double material_young(const Material *material);
 double material_poisson(const Material *material);

@@ -94,7 +94,7 @@ static int update(const void *constants, const breccia_batch *batch)
                                .time = batch->time,
                                .time_step = batch->time_step,
                                .length = batch->length ? batch->length + i : NULL};
-    if (c->base.law->update(c->base.constants, &one) >= 0) return i;
+    if (material_update(&c->base, &one) >= 0) return i;
   }
   return -1;
 }

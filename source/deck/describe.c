@@ -190,9 +190,9 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
   expression_functions(text);
   text_add(
       text,
-      ". A name alone stands for the words\nof its variable, whatever they are. Quotation marks around `${...}` are "
-      "not "
-      "needed; editors like them.\n\n"
+      "; the last six take or give angles, and\na plain number is one in radians. A name alone stands for the words of "
+      "its variable, whatever they are. Beside an operator\na quantity keeps its unit: `${height}^2` is an area, as "
+      "`${height^2}` is. Quotation marks around `${...}` are not needed; editors\nlike them.\n\n"
       "Of YAML's own means, a value marked with `&name` is used again by `*name`, and `<<: *name` takes in the keys of "
       "a "
       "map; what stands\n"

@@ -143,10 +143,18 @@ static int round_up(Reader *r, const char *at, int count, Measure *a)
   return check_plain(r, at, a, "ceil");
 }
 
+/** Takes an angle with its unit, or a plain number as one in radians. */
 static int check_angle(Reader *r, const char *at, Measure *a, const char *what)
 {
   const Measure angle = {.power[MEASURE_ANGLE] = 1};
-  if (!measure_alike(a, &angle)) return refuse(r, at, "%s takes an angle with its unit, like %s(30 deg)", what, what);
+  if (!measure_alike(a, &angle) && !measure_is_plain(a)) {
+    Text words = {0};
+    measure_describe(a, &words);
+    refuse(r, at, "%s takes an angle, like %s(30 deg), or a plain number in radians, not %s", what, what,
+           text_words(&words));
+    text_free(&words);
+    return 1;
+  }
   a->power[MEASURE_ANGLE] = 0;
   return 0;
 }
@@ -354,18 +362,23 @@ static int refuse_other(Reader *r)
   return refuse(r, c, "expected a number, a variable or '(', found '%c'", *c);
 }
 
-/* atom: number | name | call | '(' sum ')' */
+/** Reads a sum up to the bracket that closes it. */
+static int read_inner(Reader *r, int opening, char close, Measure *value)
+{
+  r->next += opening;
+  if (read_sum(r, value)) return 1;
+  if (*peek(r) != close) return refuse(r, r->next, "expected '%c'", close);
+  ++r->next;
+  return 0;
+}
+
+/* atom: number | name | call | '(' sum ')' | '${' sum '}' */
 static int read_atom(Reader *r, Measure *value)
 {
   const char *c = peek(r);
   if (isdigit((unsigned char)*c) || (*c == '.' && isdigit((unsigned char)c[1]))) return read_number(r, value);
-  if (*c == '(') {
-    ++r->next;
-    if (read_sum(r, value)) return 1;
-    if (*peek(r) != ')') return refuse(r, r->next, "expected ')'");
-    ++r->next;
-    return 0;
-  }
+  if (*c == '(') return read_inner(r, 1, ')', value);
+  if (*c == '$' && c[1] == '{') return read_inner(r, 2, '}', value);
   const size_t length = name_length(c);
   char name[64];
   if (!length) return refuse_other(r);

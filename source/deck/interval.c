@@ -23,6 +23,17 @@ bool interval_contains(const char *interval, double value)
   return (value > low || (low_in && value == low)) && (value < high || (high_in && value == high));
 }
 
+bool interval_is_valid(const char *interval)
+{
+  char *end;
+  if (*interval != '(' && *interval != '[') return false;
+  const double low = strtod(interval + 1, &end);
+  if (end == interval + 1 || *end != ',') return false;
+  const char *second = end + 1;
+  const double high = strtod(second, &end);
+  return end != second && (*end == ')' || *end == ']') && !end[1] && low < high;
+}
+
 void interval_describe(const char *interval, char *words, size_t size)
 {
   double low, high;

@@ -195,3 +195,19 @@ void measure_describe(const Measure *m, Text *words)
   text_add(words, "a quantity in ");
   add_unit(m, words);
 }
+
+void measure_describe_difference(const Measure *given, const Measure *wanted, Text *words)
+{
+  Measure size = {.value = 1};
+  int differences = 0;
+  bool more = false;
+  for (int k = 0; k < MEASURE_POWERS; ++k) {
+    const double over = given->power[k] - wanted->power[k];
+    size.power[k] = fabs(over);
+    differences += over != 0;
+    more |= over > 0;
+  }
+  const int row = known_row(&size);
+  if (differences != 1 || row < 0 || measure_is_plain(wanted)) return;
+  text_add(words, "; %s is %s", known[row].what, more ? "left over" : "missing");
+}

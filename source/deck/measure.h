@@ -31,4 +31,8 @@ int measure_write(const Measure *measure, Text *words, Text *reason);
 /** What it is, with its article: "a length", "a plain number", "a quantity in N2/m". */
 void measure_describe(const Measure *measure, Text *words);
 
+/** Adds what a quantity has more or less than one of another dimension, if that is a power of one dimension with a
+ *  name: "; a length is left over", "; a time is missing". */
+void measure_describe_difference(const Measure *given, const Measure *wanted, Text *words);
+
 #endif

@@ -3,6 +3,7 @@
 #include "deck/quantity.h"
 
 #include "base/memory.h"
+#include "deck/measure.h"
 #include "deck/units.h"
 #include <ctype.h>
 #include <math.h>
@@ -446,8 +447,9 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     *value = cv_convert_double(converter, number);
     cv_free(converter);
   }
-  ut_free(given);
-  ut_free(target);
+  Measure measure = {0}; /* of the unit that was given, if it is one of a wrong dimension */
+  const bool measured = given && !fits && !measure_unit(units, end, &measure, &meant);
+  text_free(&meant);
   bool explained = fits || explain_weight(units, dimension, end, number, words, reason);
   if (!explained && (explained = guess_unit(units, dimension, end, &meant)))
     text_add(reason, "'%s' is not a unit of %s; did you mean '%s'?", end, dimension->name, text_words(&meant));
@@ -455,10 +457,18 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     text_add(reason, "'%s' has the wrong dimension", words);
   else if (!explained)
     text_add(reason, "%s", text_words(&why));
+  ut_free(given);
+  ut_free(target);
   text_free(&why);
   text_free(&meant);
   if (fits) return 0;
   if (explained) return 1;
+  if (measured)
+    measure_describe_difference(&measure,
+                                &(Measure){.power = {[MEASURE_LENGTH] = dimension->length,
+                                                     [MEASURE_FORCE] = dimension->force,
+                                                     [MEASURE_TIME] = dimension->time}},
+                                reason);
 expected:
   if (!strcmp(dimension->name, "1"))
     text_add(reason, "; expected a plain number");

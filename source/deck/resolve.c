@@ -100,6 +100,58 @@ static int add_result(Resolver *r, const char *expression, Text *words, size_t *
   return measure_write(&value, words, reason);
 }
 
+/** Finds the bracket that closes an expression, beyond others that it holds. @return NULL if there is none */
+static const char *closing_bracket(const char *open)
+{
+  int depth = 0;
+  for (const char *c = open; *c; ++c) {
+    depth += c[0] == '$' && c[1] == '{';
+    if (*c == '}' && --depth == 0) return c;
+  }
+  return NULL;
+}
+
+/** Returns true if an operator stands outside of expressions and behind the first character, as in "${width} * 2". */
+static bool has_operator(const char *text)
+{
+  for (const char *c = text; *c; ++c) {
+    const char *close = c[0] == '$' && c[1] == '{' ? closing_bracket(c) : NULL;
+    if (close)
+      c = close;
+    else if (c > text && strchr("+-*/^", *c))
+      return true;
+  }
+  return false;
+}
+
+/** Reads a whole scalar as one formula in which the expressions are its values: a quantity keeps its unit in
+ *  "${width}^2".
+ *  @param[in,out] words  the results in the places of the expressions; that of the formula if the scalar is one */
+static void read_formula(Resolver *r, const char *text, Text *words)
+{
+  const Names names = {find, knows, r};
+  Measure value;
+  size_t at;
+  Text ignored = {0}, result = {0};
+  if (!expression_read(text, r->units, &names, &value, &at, &ignored) && !measure_write(&value, &result, &ignored)) {
+    text_free(words);
+    *words = result;
+  } else {
+    text_free(&result);
+  }
+  text_free(&ignored);
+}
+
+/** Returns true if words are a number with a unit. */
+static bool is_quantity(const Resolver *r, const char *words)
+{
+  Measure value;
+  Text ignored = {0};
+  const bool quantity = !measure_read(r->units, words, &value, &ignored) && !measure_is_plain(&value);
+  text_free(&ignored);
+  return quantity;
+}
+
 /** Puts results for the expressions of a scalar. */
 static int resolve_scalar(Resolver *r, Node *node)
 {
@@ -107,16 +159,19 @@ static int resolve_scalar(Resolver *r, Node *node)
   Text words = {0}, reason = {0};
   Node where = *node;
   int bad = 0;
+  bool quantities = false;
   for (const char *next = node->text; *next && !bad;) {
-    const char *open = strstr(next, "${"), *close = open ? strchr(open, '}') : NULL;
+    const char *open = strstr(next, "${"), *close = open ? closing_bracket(open) : NULL;
     text_add(&words, "%.*s", (int)(open ? (size_t)(open - next) : strlen(next)), next);
     if (!open) break;
     size_t at = 0;
+    const size_t before = words.length;
     char *expression = close ? text_format("%.*s", (int)(close - open - 2), open + 2) : NULL;
     if (!close) text_add(&reason, "'%s' has no '}' on its line", open);
     bad = !expression || add_result(r, expression, &words, &at, &reason);
     if (where.line && bad) /* as far as one line of text says where */
       where.column += (int)(open - node->text) + (close ? 2 : 0) + (int)at;
+    quantities |= !bad && words.length > before && is_quantity(r, text_words(&words) + before);
     if (!bad && words.length > LONGEST) {
       bad = 1;
       text_add(&reason, "the result is longer than %d letters", LONGEST);
@@ -124,6 +179,7 @@ static int resolve_scalar(Resolver *r, Node *node)
     free(expression);
     next = close ? close + 1 : "";
   }
+  if (!bad && quantities && has_operator(node->text)) read_formula(r, node->text, &words);
   if (bad && reason.length)
     node_error(r->document, &where, r->error, "%s%s%s", node->key ? node->key : "", node->key ? ": " : "",
                text_words(&reason));

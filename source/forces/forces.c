@@ -34,6 +34,10 @@ int forces_create(Forces *f, void *const *specs, const ForcesParts *parts, Error
     if (!specs[k]) continue;
     int status = kinds[k]->check ? kinds[k]->check(specs[k], parts) : BRECCIA_OK;
     if (!status) status = kinds[k]->create(specs[k], parts, &f->own[f->count], error);
+    if (status == BRECCIA_FAILURE && f->own[f->count]) { /* half made: nobody may look at it */
+      kinds[k]->destroy(f->own[f->count]);
+      f->own[f->count] = NULL;
+    }
     if (f->own[f->count]) f->type[f->count++] = kinds[k];
     if (status) return status;
   }

@@ -62,6 +62,8 @@ LANES_INLINE void add_change(const BondBased *b, double *const at[3], int64_t sl
     d += h.eta[k] * (h.xi[k] + y[k]);
     along += y[k] * h.change[k];
   }
+  const LaneMask intact = lanes_half(b->family->intact[slot], half);
+  square = lanes_choose(intact, square, lanes_set(1)); /* lanes without a bond divide by nothing that may be 0 */
   const Lanes length = lanes_root(square), stretch = d / (h.length * (length + h.length));
   Lanes tension = h.constant * stretch, slope = h.constant, weight = h.weight;
   if (b->tension) {
@@ -70,7 +72,6 @@ LANES_INLINE void add_change(const BondBased *b, double *const at[3], int64_t sl
   }
   if (b->surface) weight *= bond_surface(b, slot, half);
   const Lanes across = weight * tension / length, turned = (weight * slope / h.length - across) * along / square;
-  const LaneMask intact = lanes_half(b->family->intact[slot], half);
   for (int k = 0; k < 3; ++k) force[k] += lanes_where(intact, turned * y[k] + across * h.change[k]);
 }
 

@@ -289,6 +289,7 @@ static int verify(Concrete *c, Text *words, Error *error)
 
 int breccia_concrete_calibrate(const breccia_concrete *given, char **words, breccia_error *error)
 {
+  if (host_lacks(words, __func__, "words", error)) return BRECCIA_USER_ERROR;
   breccia_concrete wish;
   Concrete c;
   Text t = {0}, found = {0};

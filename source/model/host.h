@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/plain_locale.h"
 #include <hdf5.h>
+#include <stdbool.h>
 
 typedef struct Host {
   locale_t locale;    /* of this thread */
@@ -12,6 +13,16 @@ typedef struct Host {
   void *report_to;
   long refusals; /* of memory to this thread, until now */
 } Host;
+
+/** Refuses a NULL pointer where a function of the public interface needs an object.
+ *  @param[in] function, name  of the function and of its argument, for the message
+ *  @return true after a message; false: the pointer is not NULL */
+bool host_lacks(const void *given, const char *function, const char *name, Error *error);
+
+/** Refuses a list of a public struct that has no items where its count says that there are some.
+ *  @param[in] items  [count] words
+ *  @return true after a message; false: the list can be read */
+bool host_lacks_items(const char *const *items, int count, const char *owner, const char *name, Error *error);
 
 Host host_enter(void);
 

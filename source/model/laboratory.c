@@ -22,6 +22,8 @@ breccia_test *laboratory_begin(Error *error)
 
 int breccia_test_load(const char *path, breccia_test **out, breccia_error *error)
 {
+  if (host_lacks(path, __func__, "path", error) || host_lacks(out, __func__, "the result", error))
+    return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_test *test = laboratory_begin(error);
   int status = test ? element_deck_load(&test->deck, path, error) : BRECCIA_FAILURE;
@@ -154,6 +156,7 @@ static void doubt_time(const breccia_test *test)
 
 int breccia_test_run(breccia_test *test, int tangents, breccia_error *error)
 {
+  if (host_lacks(test, __func__, "test", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   element_curve_destroy(&test->curve);
   test->curve = (ElementCurve){0};
@@ -168,21 +171,25 @@ int breccia_test_run(breccia_test *test, int tangents, breccia_error *error)
 
 const char *breccia_test_doubts(const breccia_test *test)
 {
+  if (!test) return "";
   return breccia_error_text(test->doubts);
 }
 
 const char *breccia_test_heading(const breccia_test *test, int column)
 {
+  if (!test) return NULL;
   return column >= 0 && column < test->column_count ? test->headings[column] : NULL;
 }
 
 const double *breccia_test_column(const breccia_test *test, int column)
 {
+  if (!test) return NULL;
   return column >= 0 && column < test->column_count ? test->columns[column] : NULL;
 }
 
 int breccia_test_rows(const breccia_test *test)
 {
+  if (!test) return 0;
   return test->curve.count;
 }
 
@@ -208,6 +215,7 @@ static int compare(breccia_test *test, const char *path, breccia_comparison *fou
 
 int breccia_test_compare(breccia_test *test, const char *path, breccia_comparison *comparison, breccia_error *error)
 {
+  if (host_lacks(test, __func__, "test", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_comparison found = {0};
   const int status = compare(test, path, &found, error);
@@ -217,6 +225,7 @@ int breccia_test_compare(breccia_test *test, const char *path, breccia_compariso
 
 int breccia_test_draw(const breccia_test *test, const char *path, breccia_error *error)
 {
+  if (host_lacks(test, __func__, "test", error) || host_lacks(path, __func__, "path", error)) return BRECCIA_USER_ERROR;
   const ElementCurve *c = &test->curve;
   if (test->path || c->count < 2)
     return error_add(error, BRECCIA_USER_ERROR, "%s: there is no curve to draw", test->where);

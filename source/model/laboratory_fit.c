@@ -43,6 +43,7 @@ static int run_fit(breccia_test *test, const char *path, Error *error)
 
 int breccia_test_fit(breccia_test *test, const char *path, breccia_fit *fit, breccia_error *error)
 {
+  if (host_lacks(test, __func__, "test", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   const int status = run_fit(test, path, error);
   const ParameterFit *f = &test->fit;
@@ -103,6 +104,7 @@ static void add_judgement(const breccia_test *test, const FittedParameter *p, Te
 
 int breccia_test_fitted_at(breccia_test *test, int k, breccia_fitted *parameter)
 {
+  if (!test || !parameter) return 0;
   if (k < 0 || k >= test->fit.count) return 0;
   const Host host = host_enter();
   const FittedParameter *p = &test->fit.parameters[k];

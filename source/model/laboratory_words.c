@@ -152,6 +152,7 @@ static int make(breccia_test *test, const breccia_test_words *words, Error *erro
 
 int breccia_test_make(const breccia_test_words *given, breccia_test **out, breccia_error *error)
 {
+  if (host_lacks(out, __func__, "the result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_test_words words;
   int status = sized_take(&words, sizeof words, given, "breccia_test_words", error);

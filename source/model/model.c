@@ -13,6 +13,10 @@
 
 int model_enter(breccia_model *model, Entry *entry, Error *error)
 {
+  if (team_is_foreign(model->team))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "the model was made by another process, whose threads a fork does not copy; load it again in this "
+                     "one, or with one thread before the fork");
   if (team_threads(model->team) != model->threads) {
     team_destroy(&model->team);
     if (!(model->team = team_create(model->threads, error))) return BRECCIA_FAILURE;
@@ -53,6 +57,24 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
   node_where(model->document, node, words, sizeof words);
   text_add_warning(&model->warnings, "%s: the run ends at %g, before the picture at %g, which is not made", words, end,
                    time);
+}
+
+/** Refuses bodies in which nothing holds particles together. Those that springs hold may be masses on springs. */
+static int check_bonds(breccia_model *model, Error *error)
+{
+  const Domain *d = &model->domain;
+  const BlockSpec *block = d->body.blocks[0];
+  const PeridynamicsSpec *keys = model->spec->peridynamics;
+  const Node *node =
+      keys && node_get(keys->head.node, "horizon") ? node_get(keys->head.node, "horizon") : block->head.node;
+  if (d->family.bonds || loading_eigenvalue(&model->loading, d->particles) > 0) return BRECCIA_OK;
+  char length[32];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  return node_error(
+      model->document, node, error,
+      "horizon: no bond joins any of the %lld particle%s within %g %s; choose a longer horizon, or a finer "
+      "spacing",
+      (long long)d->particles->count, d->particles->count == 1 ? "" : "s", d->family.horizon, length);
 }
 
 /** True for a file of `breccia material`: one material, a test or stages, no body. */
@@ -212,6 +234,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
     status =
         domain_begin_under(&model->domain, &model->loading, &model->reader, &spec->initial_stress, &spec->selections);
   if (!status) status = domain_take_loads(&model->domain, &model->loading, &model->reader);
+  if (!status) status = check_bonds(model, error);
   if (status) return status;
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,
@@ -239,17 +262,20 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
 static int take_laws(breccia_model *model, const breccia_options *options, Error *error)
 {
   const int count = options->law_count;
+  if (count < 0 || (count > 0 && !options->laws))
+    return error_add(error, BRECCIA_USER_ERROR, "breccia_options: laws has %d items%s; expected as many laws", count,
+                     options->laws ? "" : " and is NULL");
   model->own_laws = memory_zeroed((size_t)count + 1, sizeof *model->own_laws, "laws", error);
   model->own_law_list = memory_zeroed((size_t)count + 1, sizeof *model->own_law_list, "laws", error);
   if (!model->own_laws || !model->own_law_list) return BRECCIA_FAILURE;
   for (int k = 0; k < count; ++k) {
     breccia_law *law = &model->own_laws[k];
+    if (host_lacks(options->laws[k], "breccia_options", "one of the laws", error)) return BRECCIA_USER_ERROR;
     if (sized_take(law, sizeof *law, options->laws[k], "breccia_law", error)) return BRECCIA_USER_ERROR;
-    if (!law->name || !law->about || !law->source || !law->maturity || !law->prepare || !law->moduli || !law->update ||
-        (law->components != 1 && law->components != 6))
-      return error_add(error, BRECCIA_USER_ERROR,
-                       "law '%s' needs name, about, source, maturity, components (1 or 6), prepare, moduli and update",
-                       law->name ? law->name : "");
+    if (law_refuse(law, error)) return BRECCIA_USER_ERROR;
+    if (law_find(&(LawList){model->own_law_list, k}, law->name))
+      return error_add(error, BRECCIA_USER_ERROR, "law '%s': there is a law of this name already; choose another name",
+                       law->name);
     model->own_law_list[k] = law;
   }
   model->laws = (LawList){model->own_law_list, count};
@@ -262,6 +288,11 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
   Entry entry;
   model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
   int status = take_laws(model, options, error);
+  if (host_lacks_items(options->settings, options->setting_count, "breccia_options", "settings", error))
+    status = BRECCIA_USER_ERROR;
+  if (options->threads < 0)
+    status = error_add(error, BRECCIA_USER_ERROR, "breccia_options: threads is %d; expected 0, or a number of threads",
+                       options->threads);
   if (options->threads > threads_most())
     status = error_add(error, BRECCIA_USER_ERROR,
                        "threads: %d would only wait for each other, as this process may use %d core%s; expected %d at "
@@ -271,6 +302,7 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
     status = error_add(error, BRECCIA_USER_ERROR,
                        "floating-point traps: there are none here; expected Linux on x86-64 with the GNU C library");
   if (!status && !(status = model_enter(model, &entry, error))) {
+    model->interrupted = options->interrupted;
     model->settings = options->settings;
     model->setting_count = options->setting_count;
     const DeckText words = {deck, name, options->settings, options->setting_count};
@@ -287,6 +319,8 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
 int breccia_model_load_string(const char *deck, const char *name, const breccia_options *given_options,
                               breccia_model **out, breccia_error *given)
 {
+  if (host_lacks(deck, __func__, "deck", given) || host_lacks(out, __func__, "the result", given))
+    return BRECCIA_USER_ERROR;
   breccia_options options;
   Error *error = given ? given : breccia_error_create();
   breccia_model *model = memory_plain(1, sizeof *model);
@@ -306,6 +340,8 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
 int breccia_model_load_file(const char *path, const breccia_options *options, breccia_model **model,
                             breccia_error *error)
 {
+  if (host_lacks(path, __func__, "path", error) || host_lacks(model, __func__, "model", error))
+    return BRECCIA_USER_ERROR;
   *model = NULL;
   size_t length;
   const Host host = host_enter();
@@ -334,6 +370,10 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->plausibility);
   text_free(&model->outcome);
   text_free(&model->stage);
+  for (int k = 0; k < MOTIONS; ++k) {
+    places_free(&model->left_displacement[k]);
+    places_free(&model->left_velocity[k]);
+  }
   free(model->schedule);
   free(model->stops);
   free(model->own_laws);
@@ -367,17 +407,51 @@ int model_advance(breccia_model *model, Error *error)
   return solver_advance(&model->solver, &model->warnings, error);
 }
 
+int model_take_motion(breccia_model *model, Error *error)
+{
+  if (!model->motion_is_left) return BRECCIA_OK;
+  model->motion_is_left = false;
+  return solver_take_motion(&model->solver, model->left_displacement, model->left_velocity, error);
+}
+
+/** Keeps the motion as it is left to the program. */
+static int model_leave_motion(breccia_model *model, Error *error)
+{
+  const Particles *p = model->domain.particles;
+  const size_t bytes = sizeof(double) * (size_t)p->places;
+  for (int k = 0; k < p->motions; ++k) {
+    double **u = &model->left_displacement[k], **v = &model->left_velocity[k];
+    if (!*u && !(*u = places_array(p->places, "motion of a program", error))) return BRECCIA_FAILURE;
+    if (!*v && !(*v = places_array(p->places, "motion of a program", error))) return BRECCIA_FAILURE;
+    memcpy(*u, p->displacement[k], bytes);
+    memcpy(*v, p->velocity[k], bytes);
+  }
+  model->motion_is_left = true;
+  return BRECCIA_OK;
+}
+
+static bool model_is_interrupted(const breccia_model *model)
+{
+  return model->interrupted && __atomic_load_n(model->interrupted, __ATOMIC_RELAXED);
+}
+
 int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
 {
+  if (host_lacks(model, __func__, "model", error)) return BRECCIA_USER_ERROR;
   Entry entry;
-  if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
-  int status = model_begin(model, error);
+  int status = model_enter(model, &entry, error);
+  if (status) return status;
+  status = model_begin(model, error);
   domain_leave_tensors(&model->domain, steps > 1);
+  if (!status) status = model_take_motion(model, error);
+  model->solver.interrupted = model->interrupted;
   for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
-    status = model_advance(model, error);
+    status = model_is_interrupted(model) ? BRECCIA_INTERRUPTED : model_advance(model, error);
+  model->solver.interrupted = NULL;
   domain_leave_tensors(&model->domain, false);
   if (model->domain.tensors_are_old && domain_observe(&model->domain, error) && !status) status = BRECCIA_FAILURE;
   solver_put_arrays_back(&model->solver);
+  if (model_leave_motion(model, error) && !status) status = BRECCIA_FAILURE;
   return model_leave(&entry, status, error);
 }
 
@@ -385,22 +459,27 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
 
 int64_t breccia_model_particles(const breccia_model *model)
 {
+  if (!model) return 0;
   return model->domain.particles->count;
 }
 int64_t breccia_model_bonds(const breccia_model *model)
 {
+  if (!model) return 0;
   return model->domain.family.bonds;
 }
 int64_t breccia_model_broken_bonds(const breccia_model *model)
 {
+  if (!model) return 0;
   return model->domain.broken_count;
 }
 int64_t breccia_model_steps_done(const breccia_model *model)
 {
+  if (!model) return 0;
   return model->solver.clock.step;
 }
 const char *breccia_model_stage(breccia_model *model)
 {
+  if (!model) return "";
   const Clock *clock = &model->solver.clock;
   char name[64];
   text_free(&model->stage);
@@ -411,27 +490,33 @@ const char *breccia_model_stage(breccia_model *model)
 }
 double breccia_model_time(const breccia_model *model)
 {
+  if (!model) return NAN;
   return model->solver.clock.time;
 }
 double breccia_model_time_step(const breccia_model *model)
 {
+  if (!model) return NAN;
   return model->solver.clock.time_step;
 }
 double breccia_model_stable_time_step(const breccia_model *model)
 {
+  if (!model) return NAN;
   return model->solver.clock.stable;
 }
 int64_t breccia_model_places(const breccia_model *model)
 {
+  if (!model) return 0;
   return model->domain.particles->places;
 }
 const int32_t *breccia_model_numbers(const breccia_model *model)
 {
+  if (!model) return NULL;
   return model->domain.particles->number;
 }
 
 const char *breccia_model_plausibility(breccia_model *model)
 {
+  if (!model) return NULL;
   const Host host = host_enter();
   text_free(&model->plausibility);
   plausibility_describe(model, true, &model->plausibility);
@@ -440,15 +525,18 @@ const char *breccia_model_plausibility(breccia_model *model)
 
 const char *breccia_model_deck(const breccia_model *model)
 {
+  if (!model) return "";
   return text_words(&model->deck);
 }
 
 const char *breccia_model_warnings(breccia_model *model)
 {
+  if (!model) return "";
   return text_words(&model->warnings);
 }
 
 const char *breccia_model_outcome(breccia_model *model)
 {
+  if (!model) return "";
   return text_words(&model->outcome);
 }

@@ -46,12 +46,18 @@ struct breccia_model {
   Peaks peaks;
   double run_seconds;
   int64_t run_steps;
+  const volatile int *interrupted; /* of breccia_options */
+  bool motion_is_left;             /* breccia_model_step has left a motion, which the program may have changed since: */
+  double *left_displacement[MOTIONS], *left_velocity[MOTIONS];
 };
 
 typedef struct Entry { /* what a public function that computes gives back at its end */
   Host host;
   Team *team;
 } Entry;
+
+/** Takes over what the program has written into displacements and velocities since breccia_model_step (solver_take_motion). */
+int model_take_motion(breccia_model *model, Error *error);
 
 /** Lets team_run of this thread use the model's threads. @return BRECCIA_OK, and then model_leave is due */
 int model_enter(breccia_model *model, Entry *entry, Error *error);

@@ -75,6 +75,7 @@ static int collect(const breccia_model *model, const StateList *list, const char
 
 int breccia_model_array_at(breccia_model *model, int k, breccia_array *given)
 {
+  if (!model || !given) return 0;
   StateList list = {0};
   breccia_array array = {0};
   if (k < 0 || list_state(model, &list)) return 0;
@@ -88,6 +89,7 @@ int breccia_model_array_at(breccia_model *model, int k, breccia_array *given)
 
 double *breccia_model_array(breccia_model *model, const char *name)
 {
+  if (!model || !name) return NULL;
   StateList list = {0};
   const bool looks = !strncmp(name, "strain ", 7) || !strncmp(name, "stress ", 7);
   if (looks && list_state(model, &list)) return NULL;

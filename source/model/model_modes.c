@@ -3,6 +3,7 @@
 #include "base/folder_lock.h"
 #include "base/memory.h"
 #include "base/whole_file.h"
+#include "model/host.h"
 #include "model/run.h"
 #include "model/sized.h"
 #include "results/result_view.h"
@@ -124,7 +125,7 @@ static int draw(const char *folder, const Modes *modes, Text *files, Error *erro
 {
   int status = BRECCIA_OK;
   char *pictures = text_format("%s/pictures", folder);
-  if (!pictures || folder_make(pictures, error)) status = BRECCIA_FAILURE;
+  if (!pictures || folder_make_inside(pictures, error)) status = BRECCIA_FAILURE;
   for (int n = 0; n < modes->count && !status; ++n) {
     char *path = text_format("%s/mode-%d.png", pictures, n + 1);
     breccia_plot plot;
@@ -174,13 +175,15 @@ static int write_all(breccia_model *model, const char *folder, const Modes *mode
 
 int breccia_model_modes(breccia_model *model, const breccia_modes *given, breccia_error *error)
 {
+  if (host_lacks(model, __func__, "model", error)) return BRECCIA_USER_ERROR;
   Entry entry;
   breccia_modes wish;
   Modes modes = {0};
   FolderLock lock = {.descriptor = -1};
-  if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
+  int status = model_enter(model, &entry, error);
+  if (status) return status;
   text_free(&model->outcome);
-  int status = sized_take(&wish, sizeof wish, given, "breccia_modes", error);
+  status = sized_take(&wish, sizeof wish, given, "breccia_modes", error);
   if (!status && wish.count < 1)
     status = error_add(error, BRECCIA_USER_ERROR, "modes: %d are asked for; ask for one or more", wish.count);
   if (!status && wish.folder) {

@@ -1,8 +1,18 @@
 /* The state of a model as a list. */
 #include "model/model.h"
 
+/** A state that is put in place as a whole is no motion that a program has written. */
+static int model_forget_motion(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)numbers, (void)count, (void)error;
+  breccia_model *model = owner;
+  model->motion_is_left = false;
+  return BRECCIA_OK;
+}
+
 void model_state(breccia_model *model, StateList *list)
 {
+  static const StateCare care = {.resume = model_forget_motion};
   Peaks *peaks = &model->peaks;
   const struct {
     const char *name, *unit;
@@ -17,7 +27,15 @@ void model_state(breccia_model *model, StateList *list)
   solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)
     state_add_number(list, largest[k].name, largest[k].unit, STATE_COMMITTED, largest[k].value);
-  state_add_count(list, "states of the stage written", STATE_COMMITTED, &model->next_due);
+  state_add(list,
+            &(StateRow){.unit = "1",
+                        .kind = STATE_COUNTS,
+                        .role = STATE_COMMITTED,
+                        .count = 1,
+                        .values = &model->next_due,
+                        .care = &care,
+                        .owner = model},
+            "states of the stage written", NULL);
   state_add_count(list, "step of the last state written", STATE_COMMITTED, &model->last_due);
   state_add_count(list, "states written", STATE_COMMITTED, &model->states_due);
   state_add_count(list, "bytes of solution.txt", STATE_COMMITTED, &model->log_bytes);

@@ -82,8 +82,12 @@ static int read_motion(breccia_motion *motion, const breccia_motion_file *file, 
   Record record = {0};
   Units *units = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
   if (!units) return BRECCIA_FAILURE;
-  const RecordFile from = {
-      .path = file->path, .column = file->column, .times = file->times ? file->times : "time", .units = units};
+  const RecordFile from = {.path = file->path,
+                           .column = file->column,
+                           .times = file->times ? file->times : "time",
+                           .step = file->step > 0 ? file->step : NAN,
+                           .channel = file->channel,
+                           .units = units};
   int status = record_read(&record, &from, label, error);
   if (!status) status = convert(&record, file, label, units, error);
   motion->rows = record.rows;
@@ -95,11 +99,17 @@ static int read_motion(breccia_motion *motion, const breccia_motion_file *file, 
 
 int breccia_motion_load(const breccia_motion_file *given, breccia_motion **out, breccia_error *error)
 {
+  if (host_lacks(out, __func__, "the result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_motion_file file;
   breccia_motion *motion = NULL;
   int status = sized_take(&file, sizeof file, given, "breccia_motion_file", error);
   if (!status && !file.path) status = error_add(error, BRECCIA_USER_ERROR, "a motion needs the path of its file");
+  if (!status && (!(file.step >= 0) || !isfinite(file.step) || file.channel < 0))
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "a motion's step of %g s or channel %d is wrong; expected positive numbers, or 0 where the file "
+                       "tells",
+                       file.step, file.channel);
   if (!status && !(motion = memory_zeroed(1, sizeof *motion, "motion", error))) status = BRECCIA_FAILURE;
   if (!status) status = read_motion(motion, &file, error);
   status = host_leave(&host, status, error);
@@ -335,6 +345,7 @@ static int check_length(const breccia_motion *motion, const breccia_motion_wish 
 int breccia_motion_analyse(breccia_motion *motion, const breccia_motion *over, const breccia_motion_wish *given,
                            breccia_error *error)
 {
+  if (host_lacks(motion, __func__, "motion", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_motion below = {0}; /* a history of its own, so that the other motion is only read */
   forget_tables(motion);
@@ -359,6 +370,7 @@ int breccia_motion_analyse(breccia_motion *motion, const breccia_motion *over, c
 
 int breccia_motion_intensity(const breccia_motion *motion, breccia_intensity *intensity)
 {
+  if (!motion || !intensity) return 0;
   return sized_give(intensity, &motion->intensity, sizeof motion->intensity);
 }
 
@@ -369,27 +381,32 @@ static const MotionTable *table_at(const breccia_motion *motion, int table)
 
 const char *breccia_motion_heading(const breccia_motion *motion, int table, int column)
 {
+  if (!motion) return NULL;
   const MotionTable *t = table_at(motion, table);
   return t && column >= 0 && column < t->count ? t->headings[column] : NULL;
 }
 
 const double *breccia_motion_column(const breccia_motion *motion, int table, int column)
 {
+  if (!motion) return NULL;
   return breccia_motion_heading(motion, table, column) ? motion->tables[table].columns[column] : NULL;
 }
 
 int breccia_motion_rows(const breccia_motion *motion, int table)
 {
+  if (!motion) return 0;
   const MotionTable *t = table_at(motion, table);
   return t ? t->rows : 0;
 }
 
 const char *breccia_motion_words(const breccia_motion *motion)
 {
+  if (!motion) return "";
   return text_words(&motion->words);
 }
 
 const char *breccia_motion_files(const breccia_motion *motion)
 {
+  if (!motion) return "";
   return text_words(&motion->files);
 }

@@ -218,6 +218,7 @@ static int draw(breccia_motion *m, const Picture *p, const char *folder, Error *
 
 int breccia_motion_write(breccia_motion *m, const char *folder, breccia_error *error)
 {
+  if (host_lacks(m, __func__, "m", error) || host_lacks(folder, __func__, "folder", error)) return BRECCIA_USER_ERROR;
   static const char *const names[] = {"motion", "response-spectrum", "fourier"};
   const Host host = host_enter();
   text_free(&m->files);

@@ -169,6 +169,7 @@ static void describe_initial_stress(const breccia_model *model, Text *text)
 
 const char *breccia_model_overview(breccia_model *model)
 {
+  if (!model) return NULL;
   const Domain *d = &model->domain;
   const Solver *s = &model->solver;
   const Host host = host_enter();

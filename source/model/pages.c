@@ -3,6 +3,7 @@
 #include "constitutive/remote/remote.h"
 #include "deck/spelling.h"
 #include "formulation/formulation.h"
+#include "model/build_page.h"
 #include "model/deck_layout.h"
 #include "model/element_deck.h"
 #include "model/host.h"
@@ -19,6 +20,7 @@ void breccia_text_free(char *text)
 
 char *breccia_visible_text(const char *words)
 {
+  if (!words) return NULL;
   Text text = {0};
   text_add(&text, "%s", ""); /* of no words a copy, too */
   text_add_visible(&text, words);
@@ -40,11 +42,13 @@ int breccia_threads(void)
 
 const char *breccia_nearest_word(const char *given, const char *const *words, int count)
 {
+  if (!given || !words) return NULL;
   return spelling_nearest(given, words, count);
 }
 
 char *breccia_deck_title(const char *deck, int *is_test)
 {
+  if (!deck) return NULL;
   const Host host = host_enter();
   Error *ignored = breccia_error_create();
   Document *document = document_parse(deck, strlen(deck), "deck", ignored);
@@ -203,7 +207,9 @@ char *breccia_page(int which)
   if (which == BRECCIA_PAGE_LAWS) {
     add_laws(&page);
     add_tests(&page);
-  } else
+  } else if (which == BRECCIA_PAGE_BUILD)
+    build_page_add(&page);
+  else
     add_deck(&page, which == BRECCIA_PAGE_SCHEMA);
   return give_page(&host, &page, NULL);
 }
@@ -237,6 +243,7 @@ char *breccia_describe_law(const char *name, breccia_error *error)
 
 int breccia_describe_opensees(char **text, breccia_error *error)
 {
+  if (host_lacks(text, __func__, "text", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   Text lines = {0}, page = {0};
   int status = remote_list_laws(&lines, error);

@@ -125,6 +125,44 @@ static void check_fracture_energy(breccia_model *model, const Material *m, doubl
                      real < 40 ? "little" : "much");
 }
 
+/** Strengths of solids are 1e-5 (weak clay) to 1e-2 (steel of tendons) of their stiffness. One whose unit was
+ *  forgotten is a thousand times off, where plain numbers are kN/m2 or N/mm2. Cohesions and tension cut-offs are left
+ *  out: they are set next to zero on purpose. */
+static void warn_of_strength(breccia_model *model, const Node *node, const char *name, double strength,
+                             const Material *m)
+{
+  static const UnitMeant units[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}};
+  const double least = 2e-6, usual_low = 2e-5, usual_high = 0.01, most = 0.5, young = material_young(m);
+  const double stiffness = plausibility_in_si(model, "stress", young);
+  if (strength > 0 && strength < least * young)
+    plausibility_beyond(model, node, name, "stress", strength, least * stiffness, most * stiffness, "Pa", units, 3,
+                        usual_low * stiffness, usual_high * stiffness);
+}
+
+static void check_strength(breccia_model *model, const Material *m)
+{
+  static const char *const names[] = {"tensile strength",   "compressive strength",     "yield stress",
+                                      "undrained strength", "compressive yield stress", "octahedral strength"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    warn_of_strength(model, section_node(plausibility_spec(model, m), names[k]), names[k],
+                     fabs(plausibility_parameter(model, m, names[k])), m);
+}
+
+/** The same of strengths of bonds, which stand with the failure criterion. @param[in] m  of most of the body */
+static void check_bond_strength(breccia_model *model, const Material *m)
+{
+  static const char *const names[] = {"bond tensile strength", "bond shear strength"};
+  for (size_t k = 0; model->spec->failure && k < sizeof names / sizeof *names; ++k) {
+    const Node *node = node_get(model->spec->failure->head.node, names[k]);
+    double strength;
+    Text ignored = {0};
+    if (node && node->kind == NODE_SCALAR &&
+        !units_read(model->units, dimension_find("stress"), node->text, &strength, &ignored))
+      warn_of_strength(model, node, names[k], strength, m);
+    text_free(&ignored);
+  }
+}
+
 static void check_material(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
@@ -152,6 +190,7 @@ static void check_material(breccia_model *model, int k)
         model, section_node(spec, "tensile strength"),
         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
         strength / material_young(m), 100 * strength / material_young(m));
+  check_strength(model, m);
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
   check_fracture_energy(model, m, plausibility_parameter(model, m, "fracture energy"),
                         section_node(spec, "fracture energy"));
@@ -193,6 +232,27 @@ static void check_locking(breccia_model *model, const Region *region)
   }
 }
 
+/** Factors on the control of zero-energy modes are of the order of 0.1; large ones let nothing but rigid motions
+ *  through. */
+static void check_control(breccia_model *model, const Region *region)
+{
+  static const char *const names[] = {"silling", "wan"};
+  const double most = 10;
+  const Node *keys = region->keys ? ((const SectionHead *)region->keys)->node : NULL;
+  const Node *control = keys ? node_get(keys, "zero-energy control") : NULL;
+  if (!control || control->kind != NODE_MAP || strcmp(region->type->name, "correspondence") != 0) return;
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+    const Node *given = node_get(control, names[k]);
+    const double factor = given && given->kind == NODE_SCALAR ? strtod(given->text, NULL) : 0;
+    if (factor > most)
+      plausibility_say(
+          model, given,
+          "%s: a factor of %g on the control of zero-energy modes stiffens the body beyond measure; 0.1 to 1 "
+          "is usual",
+          names[k], factor);
+  }
+}
+
 /** Of most of the space that the body takes; of equal ones the first of the deck. Volumes do not tell: of particles from a file they may be those of masses beside the body. */
 static const Material *main_material(const breccia_model *model)
 {
@@ -212,6 +272,11 @@ static const Material *main_material(const breccia_model *model)
     }
   }
   return &d->materials[most];
+}
+
+double plausibility_wave_speed(const breccia_model *model)
+{
+  return wave_speed(model, main_material(model));
 }
 
 static void describe_material(const breccia_model *model, int k, Text *text)
@@ -505,6 +570,8 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_pictures(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   for (int r = 0; r < model->domain.region_count; ++r) check_locking(model, &model->domain.regions[r]);
+  check_bond_strength(model, main_material(model));
+  for (int r = 0; r < model->domain.region_count; ++r) check_control(model, &model->domain.regions[r]);
   for (int r = 0; r < model->domain.region_count; ++r) check_slender(model, &model->domain.regions[r]);
   plausibility_warn_of_loads(model);
   plausibility_warn_of_ground(model);

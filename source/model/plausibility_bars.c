@@ -264,6 +264,79 @@ static void check_prestress(breccia_model *model, const Bars *b, const Load *loa
   free(strain);
 }
 
+/** Returns true if two lines of bars have the same nodes, in the same or the opposite order. */
+static bool bars_lie_on_each_other(const Bars *b, int one, int other)
+{
+  const int64_t count = b->first[one + 1] - b->first[one];
+  if (b->first[other + 1] - b->first[other] != count) return false;
+  bool along = true, against = true;
+  double middle[2][3], reversed[3];
+  for (int64_t e = 0; e < count && (along || against); ++e) {
+    bar_middle(b, b->first[one] + e, middle[0]);
+    bar_middle(b, b->first[other] + e, middle[1]);
+    bar_middle(b, b->first[other] + count - 1 - e, reversed);
+    const double near = 1e-6 * b->length[b->first[one] + e];
+    for (int k = 0; k < 3; ++k) {
+      along &= fabs(middle[0][k] - middle[1][k]) <= near;
+      against &= fabs(middle[0][k] - reversed[k]) <= near;
+    }
+  }
+  return along || against;
+}
+
+typedef struct BarPlace { /* of a line, for a search for others on the same place */
+  double sum[3];          /* of both ends */
+  int line;
+} BarPlace;
+
+static int bars_compare(const void *first, const void *second)
+{
+  const BarPlace *a = first, *b = second;
+  for (int k = 0; k < 3; ++k)
+    if (a->sum[k] != b->sum[k]) return a->sum[k] < b->sum[k] ? -1 : 1;
+  return a->line - b->line;
+}
+
+static int bars_deck_bar(const Bars *b, int line)
+{
+  int n = 0;
+  while (b->lines.first[n + 1] <= line) ++n;
+  return n;
+}
+
+/** Reinforcement that stands in the deck twice, of one size and material, counts twice. Lines are compared with the
+ *  one before them with the same ends. */
+static void check_bars_twice(breccia_model *model, const Bars *b)
+{
+  const int count = b->lines.first[b->lines.deck->count];
+  BarPlace *places = memory_zeroed((size_t)count + 1, sizeof *places, "bars", NULL);
+  bool *told = memory_zeroed((size_t)b->lines.deck->count + 1, sizeof *told, "bars", NULL);
+  for (int line = 0; places && line < count; ++line) {
+    double ends[2][3];
+    bar_middle(b, b->first[line], ends[0]);
+    bar_middle(b, b->first[line + 1] - 1, ends[1]);
+    places[line].line = line;
+    for (int k = 0; k < 3; ++k) places[line].sum[k] = round((ends[0][k] + ends[1][k]) * 1e9) / 1e9;
+  }
+  if (places) qsort(places, (size_t)count, sizeof *places, bars_compare);
+  for (int k = 1; places && told && k < count; ++k) {
+    if (!bars_lie_on_each_other(b, places[k - 1].line, places[k].line)) continue;
+    const int one = bars_deck_bar(b, places[k - 1].line), other = bars_deck_bar(b, places[k].line);
+    const BarSpec *bar = b->lines.deck->items[other], *same = b->lines.deck->items[one];
+    const bool one_size = fabs(area_of_one(b, one) - area_of_one(b, other)) <= 1e-6 * area_of_one(b, one);
+    if (!one_size || strcmp(bar->material, same->material) != 0) continue;
+    if (!told[other])
+      plausibility_say(
+          model, section_node(bar, "points"),
+          "points: bar '%s' lies where bar '%s' lies already, and both count; leave one out, or say 'number: "
+          "2'",
+          bar->head.name, same->head.name);
+    told[other] = true;
+  }
+  free(places);
+  free(told);
+}
+
 void plausibility_warn_of_bars(breccia_model *model)
 {
   const Bars *b = bars_among(&model->domain.forces);
@@ -271,6 +344,7 @@ void plausibility_warn_of_bars(breccia_model *model)
   const double body = volume_of_body(model);
   check_amount(model, b, body);
   check_yields(model, b);
+  check_bars_twice(model, b);
   for (int l = 0; l < model->loading.count; ++l) check_prestress(model, b, &model->loading.loads[l]);
   for (int n = 0; n < b->lines.deck->count; ++n) {
     check_thinness(model, b, body, n);

@@ -47,13 +47,12 @@ static void check_shaking(breccia_model *model, const Load *load)
         load->node->key, peak, peak / gravity);
 }
 
-void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text)
+/** Adds a line where several particles are equally near to a point that a load acts at. */
+static void loads_describe_point(const breccia_model *model, const Load *load, const SelectionSpec *on, Text *text)
 {
   const Body *body = &model->domain.body;
   const Particles *p = &body->particles;
-  const SelectionSpec *on = selection_spec(&model->spec->selections, &load->spec->on);
-  if (!on || isnan(on->nearest[0]) || load->selection.count != 1) return;
-  const int32_t taken = load->selection.places[0];
+  const int32_t taken = body_nearest(body, on->nearest);
   int count = 0;
   double least = 0;
   for (int k = 0; k < 3; ++k)
@@ -71,6 +70,22 @@ void plausibility_describe_middle(const breccia_model *model, const Load *load, 
            "  load in line %d: %d particles are equally near to its point; it acts on that of the lowest number, at "
            "[%g, %g, %g]\n",
            load->spec->head.node->line, count, p->position[0][taken], p->position[1][taken], p->position[2][taken]);
+}
+
+/** Goes through a selection and those that it is made of. */
+static void loads_describe_points(const breccia_model *model, const Load *load, const SelectionSpec *on, Text *text)
+{
+  if (!on) return;
+  if (!isnan(on->nearest[0])) loads_describe_point(model, load, on, text);
+  for (int k = 0; k < on->any_of.count; ++k)
+    loads_describe_points(model, load, selection_spec(&model->spec->selections, &on->any_of.items[k]), text);
+  for (int k = 0; k < on->all_of.count; ++k)
+    loads_describe_points(model, load, selection_spec(&model->spec->selections, &on->all_of.items[k]), text);
+}
+
+void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text)
+{
+  loads_describe_points(model, load, selection_spec(&model->spec->selections, &load->spec->on), text);
 }
 
 /** Whoever lets the ground settle first must hold it by something else. */
@@ -231,6 +246,99 @@ static void check_grips(breccia_model *model)
   }
 }
 
+/** Nothing solid is thrown or moved faster than waves run in it, but in impacts of meteorites. */
+static void check_speed(breccia_model *model, const Load *load)
+{
+  const bool initial = plausibility_is_kind(load->spec, "initial velocity");
+  if (!initial && !plausibility_is_kind(load->spec, "velocity")) return;
+  const char *dimension;
+  load_kind(load->spec, &dimension);
+  if (strcmp(dimension, "velocity") != 0 || solver_stage_rests(&model->solver, load->first)) return;
+  const double peak = initial ? 1 : history_peak(&load->history, model->solver.clock.end_time - load->begin);
+  const double speed = fabs(plausibility_in_si(model, "velocity", load_magnitude(load->spec) * peak)),
+               waves = plausibility_wave_speed(model);
+  if (!(speed > waves)) return;
+  Text words = {0}, limit = {0};
+  quantity_describe(speed, "m/s", &words);
+  quantity_describe(waves, "m/s", &limit);
+  plausibility_say(
+      model, load->node,
+      "%s: %s is more than the speed of waves in the body, %s, with which nothing solid stays whole; look at "
+      "its unit",
+      load->node->key, text_words(&words), text_words(&limit));
+  text_free(&words);
+  text_free(&limit);
+}
+
+/** Returns true if two values of the deck are written in the same words. */
+static bool loads_same_node(const Node *a, const Node *b)
+{
+  if (!a || !b) return a == b;
+  if (a->kind != b->kind || a->count != b->count) return false;
+  if (a->kind == NODE_SCALAR) return !strcmp(a->text ? a->text : "", b->text ? b->text : "");
+  for (int k = 0; k < a->count; ++k)
+    if (!loads_same_node(a->kind == NODE_MAP ? node_get(b, a->items[k].key) : &b->items[k], &a->items[k])) return false;
+  return true;
+}
+
+/** Returns true if two loads are the same but for their names and the words that select their particles. */
+static bool loads_are_one(const Load *a, const Load *b)
+{
+  const Node *one = a->spec->head.node, *other = b->spec->head.node;
+  if (a->type != b->type || a->first >= b->behind || b->first >= a->behind || a->selection.count != b->selection.count)
+    return false;
+  if (memcmp(a->selection.places, b->selection.places, sizeof(int32_t) * (size_t)a->selection.count) != 0) return false;
+  static const char *const keys[] = {"history", "area", "spread"};
+  for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k)
+    if (!loads_same_node(node_get(one, keys[k]), node_get(other, keys[k]))) return false;
+  return a->node && b->node && !strcmp(a->node->key, b->node->key) && loads_same_node(a->node, b->node);
+}
+
+/** Orders loads so that those on the same particles stand side by side. */
+static int loads_compare(const void *first, const void *second)
+{
+  const Load *a = *(const Load *const *)first, *b = *(const Load *const *)second;
+  if (a->type != b->type) return a->type < b->type ? -1 : 1;
+  if (a->selection.count != b->selection.count) return a->selection.count < b->selection.count ? -1 : 1;
+  const int32_t from_a = a->selection.count ? a->selection.places[0] : -1,
+                from_b = b->selection.count ? b->selection.places[0] : -1;
+  if (from_a != from_b) return from_a < from_b ? -1 : 1;
+  return a < b ? -1 : a > b;
+}
+
+/** Returns true if two loads act on the particles nearest to different points, of which plausibility_warn_of_places
+ *  speaks. */
+static bool loads_meet_by_chance(const breccia_model *model, const Load *a, const Load *b)
+{
+  const SelectionSpec *one = selection_spec(&model->spec->selections, &a->spec->on),
+                      *other = selection_spec(&model->spec->selections, &b->spec->on);
+  return one && other && one != other && !isnan(one->nearest[0]) && !isnan(other->nearest[0]) &&
+         memcmp(one->nearest, other->nearest, sizeof one->nearest) != 0;
+}
+
+/** A force that stands in the deck twice acts twice. Each load is compared with those just before it on the same
+ *  particles. */
+static void check_twice(breccia_model *model)
+{
+  enum { COMPARED = 16 };
+  const int count = model->loading.count;
+  const Load **sorted = memory_zeroed((size_t)count + 1, sizeof *sorted, "loads", NULL);
+  for (int k = 0; sorted && k < count; ++k) sorted[k] = &model->loading.loads[k];
+  if (sorted) qsort(sorted, (size_t)count, sizeof *sorted, loads_compare);
+  for (int k = 1; sorted && k < count; ++k) {
+    int same = k - 1;
+    if (!sorted[k]->type->force) continue;
+    while (same >= 0 && k - same <= COMPARED && !loads_are_one(sorted[same], sorted[k])) --same;
+    if (same < 0 || k - same > COMPARED || loads_meet_by_chance(model, sorted[same], sorted[k])) continue;
+    plausibility_say(
+        model, sorted[k]->node,
+        "%s: the load in line %d says the same of the same particles, and both act; leave one out, or give "
+        "one load the sum",
+        sorted[k]->node->key, sorted[same]->spec->head.node->line);
+  }
+  free(sorted);
+}
+
 void plausibility_warn_of_loads(breccia_model *model)
 {
   for (int k = 0; k < model->loading.count; ++k) {
@@ -242,7 +350,9 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_growth(model, &model->loading.loads[k]);
     check_sudden(model, &model->loading.loads[k]);
     check_sudden_strain(model, &model->loading.loads[k]);
+    check_speed(model, &model->loading.loads[k]);
   }
+  check_twice(model);
   check_grips(model);
 }
 

@@ -38,6 +38,9 @@ bool plausibility_is_kind(const LoadSpec *load, const char *kind);
 /** Warns of loads that act in another way than is usually meant: all at once, harder than earthquakes, at grips that break. */
 void plausibility_warn_of_loads(breccia_model *model);
 
+/** The speed of pressure waves in the material that most of the body is made of [m/s]. */
+double plausibility_wave_speed(const breccia_model *model);
+
 /** Adds a line where a load acts on the particle nearest to a point to which several are: one that is meant for the middle of a body stands beside it. */
 void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text);
 

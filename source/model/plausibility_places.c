@@ -4,10 +4,12 @@
 #include "bars/bars.h"
 #include "base/memory.h"
 #include "domain/initial_stress.h"
+#include "model/deck_layout.h"
 #include "results/profile.h"
 #include "solver/static.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double far_away = 2; /* spacings; within a body no point is farther than 0.87 of one from a particle */
 
@@ -153,8 +155,47 @@ static void check_pairs(breccia_model *model)
   free(loads);
 }
 
+/* ---- coordinates that count for nothing ---- */
+
+static void places_check_coordinate(breccia_model *model, const Field *field, const Node *point)
+{
+  double value = 0;
+  if (point->kind != NODE_LIST || point->count != 3 || !field->dimension || strcmp(field->dimension, "length") != 0)
+    return;
+  if (!strcmp(field->key, "from") || !strcmp(field->key, "to")) return; /* of a box that may reach through the plane */
+  const Node *third = &point->items[2];
+  if (third->kind != NODE_SCALAR || !strcmp(third->text, "free")) return;
+  Text ignored = {0};
+  const bool read = !units_read(model->units, dimension_find("length"), third->text, &value, &ignored);
+  text_free(&ignored);
+  if (!read || value == 0) return;
+  plausibility_say(
+      model, third,
+      "%s: its third coordinate, %s, counts for nothing: the body is plane, at z = 0; leave it out, or look "
+      "at the order of the coordinates",
+      field->key, third->text);
+}
+
+/** Looks at all points of a section of the deck, and of the sections that it is made of. */
+static void places_check_section(breccia_model *model, const Section *section, const Node *node)
+{
+  for (int f = 0; node->kind == NODE_MAP && f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    const Node *value = node_get(node, field->key);
+    if (!value) continue;
+    if (field->kind == FIELD_POINT || field->kind == FIELD_FREE_POINT) places_check_coordinate(model, field, value);
+    for (int k = 0; field->kind == FIELD_POINTS && k < value->count; ++k)
+      places_check_coordinate(model, field, &value->items[k]);
+    if (!field->section || field->kind == FIELD_CHOSEN || field->kind == FIELD_CHOICE) continue;
+    const bool items = value->kind == NODE_LIST || field->kind == FIELD_NAMED;
+    for (int k = 0; items && k < value->count; ++k) places_check_section(model, field->section, &value->items[k]);
+    if (!items) places_check_section(model, field->section, value);
+  }
+}
+
 void plausibility_warn_of_places(breccia_model *model)
 {
+  if (model->domain.body.dimensions == 2) places_check_section(model, &deck_section, model->document->root);
   const DeckSpec *deck = model->spec;
   for (int k = 0; k < deck->selections.count; ++k) check_selection(model, deck->selections.items[k]);
   for (int k = 0; k < model->loading.count; ++k) check_selection(model, model->loading.loads[k].spec->on.section);

@@ -46,6 +46,7 @@ static bool is_in_place(const breccia_plot *plot, const char *path)
 
 void breccia_plot_begin(breccia_plot *plot, size_t size)
 {
+  if (!plot) return;
   const breccia_plot usual = {.field = "octahedral shear stress",
                               .deformed = 1,
                               .azimuth = NAN,
@@ -85,6 +86,7 @@ static int check_ending(const char *path, Error *error)
 
 int breccia_can_draw(const char *path)
 {
+  if (!path) return 0;
   return picture_format(path);
 }
 
@@ -256,6 +258,7 @@ static int draw_results(const char *result, const breccia_plot *plot, Kind kind,
 
 int breccia_plot_field(const char *result, const breccia_plot *given, breccia_error *error)
 {
+  if (host_lacks(result, __func__, "result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
@@ -266,6 +269,7 @@ int breccia_plot_field(const char *result, const breccia_plot *given, breccia_er
 
 int breccia_plot_movie(const char *result, const breccia_plot *given, breccia_error *error)
 {
+  if (host_lacks(result, __func__, "result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
@@ -276,6 +280,7 @@ int breccia_plot_movie(const char *result, const breccia_plot *given, breccia_er
 
 int breccia_plot_over_length(const char *result, const breccia_plot *given, breccia_error *error)
 {
+  if (host_lacks(result, __func__, "result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
@@ -315,6 +320,7 @@ static void find_title(const char *folder, char *title, size_t size)
 
 int breccia_plot_curve(const char *const *folders, int count, const breccia_plot *given, breccia_error *error)
 {
+  if (host_lacks_items(folders, count, __func__, "folders", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   breccia_plot plot;
   int status = take_plot(&plot, given, error);

@@ -6,8 +6,10 @@
 #include "base/folder.h"
 #include "base/folder_lock.h"
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "base/tensor.h"
 #include "base/whole_file.h"
+#include "model/host.h"
 #include "model/sized.h"
 #include "results/bar_lines.h"
 #include "results/checkpoint.h"
@@ -141,6 +143,24 @@ static int forget_earlier(const Run *run, Error *error)
   return status;
 }
 
+/** Refuses links, pipes and the like that have the name of a file of the run: nothing is written through them. */
+static int refuse_links(const Run *run, Error *error)
+{
+  static const char *const names[] = {"results.vtkhdf", "results.vtkhdf.part", "results.xdmf",
+                                      "deck.yaml",      "solution.txt",        "summary.json"};
+  int status = BRECCIA_OK;
+  for (size_t k = 0; k < sizeof names / sizeof *names && !status; ++k) {
+    char *path = text_format("%s/%s", run->wish->folder, names[k]);
+    const int cause = path ? regular_file_look(path) : ENOMEM;
+    if (cause == ENOMEM)
+      status = error_add(error, BRECCIA_FAILURE, "out of memory: %s", names[k]);
+    else if (cause == ELOOP || cause == ESPIPE)
+      status = error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", path, regular_file_problem(cause));
+    free(path);
+  }
+  return status ? status : watches_refuse_links(run->model->watches, run->wish->folder, error);
+}
+
 static const char deck_heading[] = "# What was run, by Breccia ";
 
 /** Looks whether what will be written would take the place of a file of the user's: a deck, or a table that the deck reads. */
@@ -252,7 +272,8 @@ static int open_files(Run *run, Error *error)
                              .count = run->names.count,
                              .single = !strcmp(model->spec->results->precision, "single"),
                              .deck = text_words(&model->deck)};
-  int status = spare_files_of_others(run, error);
+  int status = refuse_links(run, error);
+  if (!status) status = spare_files_of_others(run, error);
   if (status) return status;
   if (run->wish->restart) {
     status = check_states(run, error);
@@ -450,7 +471,9 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) status = read_checkpoint(&run, error);
   run.steps = steps_wanted(&run); /* only now: a checkpoint may know of more */
+  if (wish->restart) model->motion_is_left = false;
   if (!status) status = model_begin(model, error);
+  if (!status) status = model_take_motion(model, error);
   if (!status) status = open_files(&run, error);
   status = host_status(run.host, status, error); /* headings are whole, or nothing is written below them */
   if (!status) {
@@ -470,6 +493,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
 
 int breccia_model_run(breccia_model *model, const breccia_run *given_wish, breccia_error *given)
 {
+  if (host_lacks(model, __func__, "model", given)) return BRECCIA_USER_ERROR;
   Error *error = given ? given : breccia_error_create();
   breccia_run wish;
   int status = sized_take(&wish, sizeof wish, given_wish, "breccia_run", error);

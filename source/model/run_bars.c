@@ -114,6 +114,7 @@ void run_tell_bars(const breccia_model *model, Text *t)
 
 const char *breccia_model_event(const breccia_model *model)
 {
+  if (!model) return "";
   const Bars *b = bars_among(&model->domain.forces);
   bool yield = false, torn = false;
   for (int64_t e = 0; b && e < b->count; ++e) {

@@ -191,7 +191,7 @@ int run_draw_pictures(Run *run, Error *error)
   ResultView view;
   if (!path || !folder)
     outcome.status = error_add(error, BRECCIA_FAILURE, "out of memory: pictures");
-  else if (folder_make(folder, error) || result_view_open(&view, path, error))
+  else if (folder_make_inside(folder, error) || result_view_open(&view, path, error))
     outcome.status = BRECCIA_FAILURE;
   else {
     if (view.steps) draw_all(run, &view, &outcome);

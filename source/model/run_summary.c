@@ -3,6 +3,7 @@
 #include "model/run.h"
 
 #include "results/checkpoint.h"
+#include "solver/distortion.h"
 #include "solver/quasi_static.h"
 #include "solver/reactions.h"
 #include "solver/rest.h"
@@ -64,12 +65,17 @@ static double without_rounding(double value, double whole)
   return fabs(value) < 1e-12 * whole ? 0 : value;
 }
 
-/** The bond that broke first, and its middle; NULL if none did. */
+/** The bond that broke first, and a place near it inside of the body; NULL if none did.
+ *  @param[out] middle  that of its ends; of ends outside of the body their originals count if both are there, else
+ *  the end inside alone */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
   if (!d->broken_count) return NULL;
   const BrokenBond *bond = &d->broken[0];
-  const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
+  const bool outside[2] = {body_outside(&d->body, bond->a), body_outside(&d->body, bond->b)};
+  int64_t ends[2] = {outside[0] && !outside[1] ? bond->b : bond->a, outside[1] && !outside[0] ? bond->a : bond->b};
+  for (int k = 0; k < 2; ++k) ends[k] = body_original(&d->body, ends[k]);
+  const int32_t a = d->particles->place_of[ends[0]], b = d->particles->place_of[ends[1]];
   for (int k = 0; k < 3; ++k)
     middle[k] = without_rounding((d->particles->position[k][a] + d->particles->position[k][b]) / 2, d->family.horizon);
   return bond;
@@ -375,23 +381,12 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   text_add(t, "\n");
 }
 
-/** Particles of whole families that are turned inside out, as a motion in the wrong unit brings about: laws and formulations know nothing against it. */
+/** Warns of particles that are turned inside out, where a run ends before distortion_watch has looked at them, or does not mind them. */
 static void tell_inverted(const Domain *d, const char *length, Text *t)
 {
   const Particles *p = d->particles;
-  int64_t count = 0;
   int32_t first = 0;
-  for (int32_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    double f[9];
-    const Region *region = domain_region(d, i);
-    if (body_outside(&d->body, n) || domain_damage(d, i) > 0) continue;
-    region->type->gradient(region->formulation, i, f);
-    const double determinant =
-        f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
-    if (determinant > 0) continue;
-    if (!count++) first = i;
-  }
+  const int64_t count = distortion_inverted(d, &first);
   if (count)
     text_add(t,
              "warning: %lld particle%s turned inside out, the first at [%.4g, %.4g, %.4g] %s: no body can be moved so; "

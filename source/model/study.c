@@ -222,12 +222,23 @@ static int make_cases(Study *study, Error *error)
   return status;
 }
 
+static bool plan_lacks_items(const breccia_study_plan *p, Error *error)
+{
+  static const char owner[] = "breccia_study_plan";
+  return host_lacks_items(p->varied, p->varied_count, owner, "varied", error) ||
+         host_lacks_items(p->settings, p->setting_count, owner, "settings", error) ||
+         host_lacks_items(p->results, p->result_count, owner, "results", error) ||
+         host_lacks_items(p->curves, p->curve_count, owner, "curves", error);
+}
+
 int breccia_study_create(const breccia_study_plan *plan, breccia_study **out, breccia_error *error)
 {
+  if (host_lacks(out, __func__, "the result", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   Study *study = memory_plain(1, sizeof *study);
   int status = study ? sized_take(&study->plan, sizeof study->plan, plan, "breccia_study_plan", error)
                      : error_add(error, BRECCIA_FAILURE, "out of memory: study");
+  if (!status && plan_lacks_items(&study->plan, error)) status = BRECCIA_USER_ERROR;
   if (!status && (!study->plan.deck || !study->plan.folder))
     status = error_add(error, BRECCIA_USER_ERROR, "a study needs a deck and a folder");
   if (!status) status = make_cases(study, error);
@@ -296,6 +307,7 @@ int study_state(const StudyCase *one)
 
 int breccia_study_case_at(const breccia_study *study, int k, breccia_case *given)
 {
+  if (!study || !given) return 0;
   if (k < 0 || k >= study->count) return 0;
   const StudyCase *one = &study->cases[k];
   const breccia_case found = {.name = one->name,
@@ -308,10 +320,12 @@ int breccia_study_case_at(const breccia_study *study, int k, breccia_case *given
 
 const char *breccia_study_table(const breccia_study *study)
 {
+  if (!study) return "";
   return text_words(&study->table);
 }
 
 const char *breccia_study_files(const breccia_study *study)
 {
+  if (!study) return "";
   return text_words(&study->files);
 }

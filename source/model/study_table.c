@@ -344,6 +344,7 @@ static int make_report(Study *study, Error *error)
 
 int breccia_study_report(breccia_study *study, breccia_error *error)
 {
+  if (host_lacks(study, __func__, "study", error)) return BRECCIA_USER_ERROR;
   const Host host = host_enter();
   text_free(&study->table);
   text_free(&study->files);
@@ -353,6 +354,7 @@ int breccia_study_report(breccia_study *study, breccia_error *error)
 
 int breccia_study_figure(const breccia_study *study, int k, const char *name, double *value)
 {
+  if (!study || !name || !value) return 0;
   *value = NAN;
   if (k < 0 || k >= study->count) return 0;
   const Host host = host_enter();

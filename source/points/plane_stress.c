@@ -52,7 +52,7 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
   double *const x = strain_zz + at, ends[2] = {from, from}, values[2];
   if (!(fabs(from) <= most)) return false;
   *x = from;
-  if (m->law->update(m->constants, &one) >= 0) return false;
+  if (material_update(m, &one) >= 0) return false;
   if (is_free_of_zz(m, &one, 0, part)) return true;
   values[0] = values[1] = one.stress[ZZ][0];
   double step = -values[0] / elastic_zz(m);
@@ -60,7 +60,7 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
     ends[0] = ends[1];
     values[0] = values[1];
     *x = ends[1] += step;
-    if (fabs(*x) > most || m->law->update(m->constants, &one) >= 0) return false;
+    if (fabs(*x) > most || material_update(m, &one) >= 0) return false;
     values[1] = one.stress[ZZ][0];
     if (values[0] * values[1] > 0 && is_free_of_zz(m, &one, 0, part)) return true;
   }
@@ -69,14 +69,14 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
     /* The secant where it lies well inside, otherwise the middle. */
     const double share = values[0] / (values[0] - values[1]);
     *x = ends[0] + (n % 3 != 2 && share > 0.01 && share < 0.99 ? share : 0.5) * (ends[1] - ends[0]);
-    if (m->law->update(m->constants, &one) >= 0) return false;
+    if (material_update(m, &one) >= 0) return false;
     const int side = one.stress[ZZ][0] * values[0] > 0 ? 0 : 1;
     ends[side] = *x;
     values[side] = one.stress[ZZ][0];
   }
   if (is_free_of_zz(m, &one, 0, SHARP)) return true;
   *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
-  return m->law->update(m->constants, &one) < 0;
+  return material_update(m, &one) < 0;
 }
 
 /** The strain zz of a point, as it is looked for. */
@@ -160,7 +160,7 @@ int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_
   double *zz = strain_zz;
   now.tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
-    const int bad = m->law->update(m->constants, &now);
+    const int bad = material_update(m, &now);
     int left[BATCH], count = 0;
     if (bad >= 0 && iteration == 0) return bad;
     if (bad >= 0) return fail(searches, batch->count, is_packed ? packed.of[bad] : bad, strain_zz);

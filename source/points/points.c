@@ -210,7 +210,7 @@ void points_make_batch(breccia_batch *batch, const Points *points, int64_t first
 int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6])
 {
   return points->plane_stress && points->components == 6 ? plane_stress_update(m, batch, strain[ZZ])
-                                                         : m->law->update(m->constants, batch);
+                                                         : material_update(m, batch);
 }
 
 /** One point after the other: those that cannot be integrated are marked, carry nothing and keep their history. */

@@ -28,7 +28,7 @@ static double unloading_share(const Points *points, int64_t row, const double st
   batch.trial = scratch;
   batch.tangent = NULL;
   memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-  if (m->law->update(m->constants, &batch) >= 0) return 0;
+  if (material_update(m, &batch) >= 0) return 0;
   for (int k = 0; k < 6; ++k) {
     square += stress[k] * stress[k] * (k < 3 ? 1 : 2);
     fall += stress[k] * (stress[k] - after[k]) * (k < 3 ? 1 : 2);

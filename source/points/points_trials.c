@@ -18,7 +18,7 @@ static double stress_from(const Points *points, int64_t row, const double *from,
   batch.trial = to;
   batch.tangent = tangent;
   memcpy(to, from, sizeof(double) * (size_t)m->history_values);
-  if (m->law->update(m->constants, &batch) < 0) return stress;
+  if (material_update(m, &batch) < 0) return stress;
   memcpy(to, from, sizeof(double) * (size_t)m->history_values);
   if (tangent) *tangent = 0;
   return 0;
@@ -53,7 +53,7 @@ int64_t points_ask_slopes(Points *points, int64_t first, int count, double *stra
   breccia_batch batch;
   points_make_batch(&batch, points, first, count, &strain, &stress);
   batch.tangent = slope;
-  const int bad = m->law->update(m->constants, &batch);
+  const int bad = material_update(m, &batch);
   return bad < 0 ? -1 : first + bad;
 }
 
@@ -120,7 +120,7 @@ double points_softness(const Points *points, int64_t row)
                   step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
     }
     if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-    if (m->law->update(m->constants, &batch) >= 0) continue;
+    if (material_update(m, &batch) >= 0) continue;
     for (int k = 0; k < 6; ++k) product += before[k] * (after[k] - before[k]) * (k < 3 ? 1 : 2);
     if (square > 0) stiffest = fmax(stiffest, product / (step * square));
   }

@@ -150,7 +150,7 @@ int bar_lines_write(const Domain *domain, const char *folder, const Units *units
   if (!b) return BRECCIA_OK;
   char *inside = text_format("%s/bars", folder);
   if (!inside) return error_add(error, BRECCIA_FAILURE, "out of memory: bars");
-  int status = folder_make(inside, error);
+  int status = folder_make_inside(inside, error);
   Text words = {0};
   if (!status) {
     add_table(b, units, &words);

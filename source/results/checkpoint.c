@@ -1,6 +1,7 @@
 #include "results/checkpoint.h"
 
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 #include "breccia/breccia.h"
@@ -228,7 +229,7 @@ int checkpoint_open(Checkpoint *c, const char *folder, CheckpointWhich which, co
   const int broken = seal_is_broken(c->path);
   if (broken < 0)
     return error_add(error, errno == EIO ? BRECCIA_FAILURE : BRECCIA_USER_ERROR, "%s: cannot be read: %s", c->path,
-                     text_why_unread(errno));
+                     regular_file_problem(errno));
   const bool whole = !broken;
   if (whole) hdf5_file_open(&c->file, c->path);
   const int status = c->file.id >= 0 ? check_file(c, of, error) : STATE_MISFIT;

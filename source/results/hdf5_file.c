@@ -2,6 +2,9 @@
 
 #include "base/file_bytes.h"
 #include "base/memory.h"
+#include "base/regular_file.h"
+#include "base/text.h"
+#include "results/global_heap.h"
 #include "results/journal.h"
 
 #include <errno.h>
@@ -44,7 +47,7 @@ static H5FD_t *driver_open(const char *path, unsigned flags, hid_t properties, h
   if (flags & H5F_ACC_EXCL) way |= O_EXCL;
   struct stat status;
   driver->error = info->error;
-  driver->descriptor = open(path, way, 0666);
+  driver->descriptor = way == O_RDONLY ? text_open_file(path) : regular_file_open(path, way);
   *info->error = 0; /* HDF5 tries first whether the file is there */
   if (driver->descriptor < 0 || fstat(driver->descriptor, &status)) {
     note(driver);
@@ -121,6 +124,7 @@ static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr
   const size_t there = n < 0 ? 0 : (size_t)n;
   memset((char *)buffer + there, 0, size - there); /* behind the end of the file there are zeros */
   if (driver->journal) journal_overlay(driver->journal, (int64_t)from, size, buffer);
+  if (global_heap_is_damaged(buffer, size)) memset(buffer, 0, size); /* zeros are no heap, and HDF5 refuses them */
   return 0;
 }
 
@@ -234,5 +238,5 @@ int hdf5_file_close(Hdf5File *file)
 
 const char *hdf5_file_reason(const Hdf5File *file)
 {
-  return file->error ? strerror(file->error) : "HDF5 refused";
+  return file->error ? regular_file_problem(file->error) : "HDF5 refused";
 }

@@ -3,6 +3,7 @@
 #include "base/checksum.h"
 #include "base/file_bytes.h"
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "base/text.h"
 #include "base/whole_file.h"
 #include <errno.h>
@@ -159,7 +160,7 @@ static int put_in(int descriptor, const unsigned char *all)
 /** Writes the journal beside the file. @return 0, or errno: then it is not there */
 static int write_journal(const Journal *j, const unsigned char *all, size_t size)
 {
-  const int file = open(j->part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int file = regular_file_open(j->part, O_WRONLY | O_CREAT | O_TRUNC);
   int cause = file < 0 ? errno : file_write_at(file, all, size, 0);
   if (!cause && file_settle(file)) cause = errno;
   if (file >= 0 && close(file) && !cause) cause = errno;
@@ -207,11 +208,11 @@ int journal_finish(const char *path, Error *error)
   struct stat now;
   size_t size = 0;
   char *all = status || access(beside, F_OK) ? NULL : text_read_file(beside, &size);
-  const int file = all ? open(path, O_WRONLY | O_CLOEXEC) : -1;
+  const int file = all ? regular_file_open(path, O_WRONLY) : -1;
   if (!all) {
     if (!status && errno != ENOENT) status = error_add(error, BRECCIA_FAILURE, "%s: %s", beside, strerror(errno));
   } else if (file < 0 || fstat(file, &now)) {
-    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, regular_file_problem(errno));
   } else if (!fits(all, size, now.st_size)) {
     status = error_add(error, BRECCIA_USER_ERROR,
                        "%s: is damaged, or not of the %s beside it; put back both as they were, or run again", beside,

@@ -1,6 +1,7 @@
 #include "results/movie.h"
 
 #include "base/program.h"
+#include "base/regular_file.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -80,6 +81,12 @@ static int encode(FILE *frames, int wide, int high, double rate, const char *pat
                                NULL};
   Text reason = {0};
   int status = BRECCIA_OK;
+  const int cause = regular_file_make(part);
+  if (cause) {
+    status = error_add(error, BRECCIA_FAILURE, "%s: not made: %s", path, regular_file_problem(cause));
+    free(part);
+    return status;
+  }
   const ProgramEnd end = program_feed(words, frames, &reason);
   if (end == PROGRAM_MISSING)
     status = error_add(error, BRECCIA_FAILURE,

@@ -1,6 +1,7 @@
 #include "results/picture.h"
 
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "deck/quantity.h"
 #include "results/bar_columns.h"
 #include "results/colours.h"
@@ -374,7 +375,9 @@ int picture_draw(const ResultView *view, int step, const PictureOptions *o, cons
   if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
   const char *ending = strrchr(path, '.');
   cairo_surface_t *surface;
-  int status = render(&surface, view, step, o, survey, part, ending, error);
+  const int cause = regular_file_make(part);
+  int status = cause ? error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, regular_file_problem(cause))
+                     : render(&surface, view, step, o, survey, part, ending, error);
   if (!status) {
     errno = 0;
     cairo_status_t end = cairo_surface_status(surface);

@@ -49,7 +49,8 @@ static Ticks place_ticks(double low, double high, double points, double apart)
   double number = fmax(1, fmin(6, points / apart)), distance = scale_ticks(high - low, number);
   while (distance / (high - low) * points < apart && number > 0.2) distance = scale_ticks(high - low, number *= 0.7);
   const double first = ceil(low / distance - 1e-9);
-  return (Ticks){distance, first * distance, (int)(floor(high / distance + 1e-9) - first) + 1};
+  const double more = floor(high / distance + 1e-9) - first; /* no number where low and high are one */
+  return (Ticks){distance, first * distance, more >= 0 ? (int)more + 1 : 0};
 }
 
 /** A narrow body may lie between two ticks: then nearer ones, of which words that take `room` each leave one. */

@@ -1,6 +1,7 @@
 #include "results/plot.h"
 
 #include "base/program.h"
+#include "base/regular_file.h"
 #include "results/display_unit.h"
 #include <errno.h>
 #include <math.h>
@@ -29,7 +30,7 @@ static void quote(Text *script, const char *words)
 static bool is_whole(const char *picture, const char *path)
 {
   char tail[65] = "";
-  FILE *file = fopen(picture, "rb");
+  FILE *file = regular_file_stream(picture, "r");
   if (!file) return false;
   const char *ending = strrchr(path, '.');
   const char *last = !ending || !strcmp(ending, ".png") ? "IEND" : !strcmp(ending, ".svg") ? "</svg>" : "%%EOF";
@@ -49,12 +50,8 @@ static int run_gnuplot(const Text *script, const char *part, const char *path, b
   Text reason = {0};
   struct stat empty;
   int status = BRECCIA_OK;
-  FILE *file = fopen(part, "w"); /* gnuplot would not tell why it cannot */
-  if (!file || fclose(file)) {
-    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
-    if (file) remove(part);
-    return status;
-  }
+  const int cause = regular_file_make(part); /* gnuplot would not tell why it cannot */
+  if (cause) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, regular_file_problem(cause));
   const ProgramEnd end = program_run(words, script->characters, script->length, &reason);
   if (missing) *missing |= end == PROGRAM_MISSING;
   if (end == PROGRAM_MISSING)

@@ -276,7 +276,7 @@ static int write_one(const Profiles *profiles, const Profile *profile, const cha
 int profiles_write(const Profiles *profiles, const char *folder, const Units *units, Text *files, Error *error)
 {
   char *inside = profiles->count ? text_format("%s/profiles", folder) : NULL;
-  int status = inside ? folder_make(inside, error) : BRECCIA_OK;
+  int status = inside ? folder_make_inside(inside, error) : BRECCIA_OK;
   for (int k = 0; k < profiles->count && !status; ++k) {
     char name[160];
     text_file_name(profiles->items[k].spec->head.name, name, sizeof name);

@@ -3,6 +3,7 @@
 #include "base/checksum.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/regular_file.h"
 #include "base/team.h"
 #include "base/whole_file.h"
 #include "results/bar_states.h"
@@ -317,7 +318,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
   bad |= hdf5_file_close(&h5);
   if (bad) return give_up(file, hdf5_file_reason(&h5), error);
   const int cause = journal_forget(file->path); /* of the file that is replaced */
-  return cause ? give_up(file, strerror(cause), error) : put_in_place(file, error);
+  return cause ? give_up(file, regular_file_problem(cause), error) : put_in_place(file, error);
 }
 
 static int grow_times(ResultFile *file, Error *error)
@@ -467,7 +468,7 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
   if (!file->hidden && !in_place) {
     file->copied_at = clock_seconds();
     const int cause = whole_file_copy(file->path, file->part);
-    if (cause) return give_up(file, strerror(cause), error);
+    if (cause) return give_up(file, regular_file_problem(cause), error);
     file->copy_seconds = clock_seconds() - file->copied_at;
   }
   file->times[file->writes] = time;
@@ -545,7 +546,7 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
                      "%s: holds results of another deck; put the file back as it was, or run without --restart",
                      file->path);
   const int cause = whole_file_copy(file->path, file->part);
-  if (cause) return give_up(file, strerror(cause), error);
+  if (cause) return give_up(file, regular_file_problem(cause), error);
   Hdf5File h5;
   int bad = hdf5_file_extend(&h5, file->part) || cut(file, &h5, d);
   bad |= hdf5_file_close(&h5);

@@ -2,6 +2,7 @@
 
 #include "base/checksum.h"
 #include "base/file_bytes.h"
+#include "base/regular_file.h"
 #include "base/whole_file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -16,7 +17,12 @@ static int words_for(const char *path, char words[SEAL_BYTES])
   uint32_t sum;
   int64_t bytes;
   memset(words, 0, SEAL_BYTES);
-  if (checksum_of_file(path, SEAL_BYTES, INT64_MAX, &sum, &bytes)) return 1;
+  const int file = regular_file_open(path, O_RDONLY);
+  if (file < 0) return 1;
+  const int bad = checksum_of_descriptor(file, SEAL_BYTES, INT64_MAX, &sum, &bytes), cause = errno;
+  close(file);
+  errno = cause;
+  if (bad) return 1;
   snprintf(words, SEAL_BYTES, "Breccia checkpoint\nbytes behind the first %d: %" PRId64 "\nCRC-32: %08" PRIx32 "\n",
            SEAL_BYTES, bytes, sum);
   return 0;
@@ -26,7 +32,7 @@ int seal_file(const char *path)
 {
   char words[SEAL_BYTES];
   if (words_for(path, words)) return 1;
-  const int file = open(path, O_WRONLY);
+  const int file = regular_file_open(path, O_WRONLY);
   int bad = file < 0 || file_write_at(file, words, SEAL_BYTES, 0) || file_settle(file);
   if (file >= 0 && close(file)) bad = 1;
   return bad;
@@ -36,7 +42,7 @@ int seal_is_broken(const char *path)
 {
   char words[SEAL_BYTES], there[SEAL_BYTES];
   if (words_for(path, words)) return -1;
-  const int file = open(path, O_RDONLY);
+  const int file = regular_file_open(path, O_RDONLY);
   if (file < 0) return -1;
   const int64_t n = file_read_at(file, there, SEAL_BYTES, 0);
   const int problem = errno;

@@ -21,6 +21,8 @@ typedef struct Watches Watches;
 /** Resolves the watches of a deck on a body. */
 int watches_create(Watches **watches, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections);
+/** Refuses links, pipes and the like that have the name of a history's file. */
+int watches_refuse_links(const Watches *watches, const char *folder, Error *error);
 /** Looks whether a history would be written over a table that the deck reads.
  *  @param[in] files  what the deck reads, a line each (DeckReader) */
 int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error);

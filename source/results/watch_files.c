@@ -2,6 +2,7 @@
 #include "results/watch_parts.h"
 
 #include "base/checksum.h"
+#include "base/regular_file.h"
 #include "base/whole_file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -65,17 +66,28 @@ static int say_unread(const char *path, Error *error)
   return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(EIO));
 }
 
+/** Computes the checksum of at most so many bytes of a history, which must be a regular file. @return 0, or 1 with the cause in errno */
+static int checksum_of_history(const char *path, int64_t most, uint32_t *sum, int64_t *count)
+{
+  const int file = regular_file_open(path, O_RDONLY);
+  if (file < 0) return 1;
+  const int bad = checksum_of_descriptor(file, 0, most, sum, count), cause = errno;
+  close(file);
+  errno = cause;
+  return bad;
+}
+
 static int check_rows(const Watch *w, const char *path, int64_t step, Error *error)
 {
   uint32_t sum;
   int64_t count;
-  const bool unread = checksum_of_file(path, 0, w->kept_bytes, &sum, &count) != 0;
+  const bool unread = checksum_of_history(path, w->kept_bytes, &sum, &count) != 0;
   if (unread && errno == EIO) return say_unread(path, error);
   if (unread)
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or "
                      "run without --restart",
-                     path, text_why_unread(errno), (long long)step);
+                     path, regular_file_problem(errno), (long long)step);
   if (count < w->kept_bytes || sum != (uint32_t)w->kept_sum)
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: its rows up to step %lld, from which the run goes on, are not all as they were written; put "
@@ -96,6 +108,21 @@ int watches_check(const Watches *watches, const char *folder, int64_t step, Erro
   return status;
 }
 
+int watches_refuse_links(const Watches *watches, const char *folder, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < watches->count && !status; ++k) {
+    char *path = path_in(folder, &watches->items[k]);
+    const int cause = path ? regular_file_look(path) : ENOMEM;
+    if (!path)
+      status = error_add(error, BRECCIA_FAILURE, "out of memory: watches");
+    else if (cause == ELOOP || cause == ESPIPE)
+      status = error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", path, regular_file_problem(cause));
+    free(path);
+  }
+  return status;
+}
+
 int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error)
 {
   int status = BRECCIA_OK;
@@ -103,7 +130,7 @@ int watches_spare(const Watches *watches, const char *folder, const char *files,
     char *path = path_in(folder, &watches->items[k]), *bytes = NULL;
     uint32_t sum;
     int64_t count;
-    if (path && !checksum_of_file(path, 0, INT64_MAX, &sum, &count))
+    if (path && !checksum_of_history(path, INT64_MAX, &sum, &count))
       bytes = text_format("%08" PRIx32 " %" PRId64 " ", sum, count);
     else if (path && errno == EIO)
       status = say_unread(path, error);
@@ -126,9 +153,9 @@ int watches_open(Watches *watches, const char *folder, const Units *units, bool 
     free(w->path);
     w->path = path_in(folder, w);
     if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    w->file = fopen(w->path, resume ? "a" : "w");
+    w->file = regular_file_stream(w->path, resume ? "a" : "w");
     if (!w->file || (resume && ftruncate(fileno(w->file), (off_t)w->kept_bytes)))
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, regular_file_problem(errno));
     if (resume) {
       w->bytes = w->kept_bytes;
       w->last_step = w->kept_step;
@@ -199,7 +226,7 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
 static bool is_in_place(const Watch *w)
 {
   struct stat own, named;
-  return !fstat(fileno(w->file), &own) && !stat(w->path, &named) && own.st_ino == named.st_ino &&
+  return !fstat(fileno(w->file), &own) && !lstat(w->path, &named) && own.st_ino == named.st_ino &&
          own.st_dev == named.st_dev && own.st_size == w->bytes;
 }
 

@@ -52,7 +52,7 @@ static void find_tangent(const Region *region, int axes, int32_t place, ElementM
   m->lame = axes > 1 ? normal - 2 * shear : 0;
 }
 
-ElementModuli element_moduli(const Domain *d, int32_t place)
+ElementModuli element_moduli(const Domain *d, int32_t place, bool linearised)
 {
   const Material *m = &d->materials[d->material[place / SLICE]];
   const Region *region = domain_region(d, place);
@@ -63,7 +63,7 @@ ElementModuli element_moduli(const Domain *d, int32_t place)
   if (axes == 2 && region->points.plane_stress) whole.lame = 2 * m->shear * lame / (lame + 2 * m->shear);
   if (axes == 1) whole = (ElementModuli){0, material_young(m) / 2};
   now = whole;
-  find_tangent(region, axes, place, &now);
+  if (linearised) find_tangent(region, axes, place, &now);
   const double left = fmax(least, 1 - domain_damage(d, place));
   now.shear = fmax(now.shear, least * whole.shear);
   now.lame = axes > 1 ? fmax(now.lame, -1.9 / axes * now.shear) : 0; /* it resists any change of volume */

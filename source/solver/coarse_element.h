@@ -19,7 +19,9 @@ typedef struct ElementModuli {
 /** Integrals over a box by 2 points along each axis. */
 void element_stiffness(int axes, const double size[3], ElementStiffness *stiffness);
 
-/** What a particle's family has left, at the state at which the domain was linearised. */
-ElementModuli element_moduli(const Domain *domain, int32_t place);
+/** Computes the moduli that a particle's family has left.
+ *  @param[in] linearised  true: by the tangent of its point, at the state at which the domain was linearised; false: by the elastic moduli.
+ *                         Tangents outlive the stage that has linearised the domain, and a restart does not have them */
+ElementModuli element_moduli(const Domain *domain, int32_t place, bool linearised);
 
 #endif

@@ -1,9 +1,8 @@
 #include "solver/coarse_grid.h"
 
-#include "base/library_threads.h"
 #include "base/team.h"
 #include "solver/coarse_element.h"
-#include <cholmod.h>
+#include "solver/factors.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,9 +33,9 @@ struct CoarseGrid {
   double *parts;                    /* [element_count][CORNERS * 3] */
   const double *diagonal, *turning; /* as it was prepared */
   double *stiffness;                /* [corner_count][NEIGHBOURS][9], only while equations are made */
-  cholmod_common common;
-  cholmod_factor *factor;
-  cholmod_dense *right, *answer, *work[2];
+  Factors *factors;
+  /** Forces at the corners, overwritten by displacements [corner_count * axes]. */
+  double *answer;
 };
 
 /* ---- laying it ---- */
@@ -167,10 +166,9 @@ CoarseGrid *coarse_grid_create(const Domain *d, Error *error)
   if (!g) return NULL;
   g->domain = d;
   g->axes = d->body.dimensions;
-  cholmod_start(&g->common);
-  g->common.supernodal = CHOLMOD_SIMPLICIAL;
-  g->common.print = 0;
-  if (!choose_elements(g, error) || !sort_particles(g, error) || !number_corners(g, error)) coarse_grid_destroy(&g);
+  g->factors = factors_create("coarse grid", error);
+  if (!g->factors || !choose_elements(g, error) || !sort_particles(g, error) || !number_corners(g, error))
+    coarse_grid_destroy(&g);
   return g;
 }
 
@@ -178,11 +176,8 @@ void coarse_grid_destroy(CoarseGrid **grid)
 {
   CoarseGrid *g = *grid;
   if (!g) return;
-  cholmod_free_factor(&g->factor, &g->common);
-  cholmod_free_dense(&g->right, &g->common);
-  cholmod_free_dense(&g->answer, &g->common);
-  for (int k = 0; k < 2; ++k) cholmod_free_dense(&g->work[k], &g->common);
-  cholmod_finish(&g->common);
+  factors_destroy(&g->factors);
+  free(g->answer);
   free(g->corner);
   free(g->first);
   free(g->place);
@@ -196,7 +191,7 @@ void coarse_grid_destroy(CoarseGrid **grid)
 
 size_t coarse_grid_bytes(const CoarseGrid *g)
 {
-  return g->common.memory_inuse + sizeof(int32_t) * (size_t)g->domain->particles->count +
+  return factors_bytes(g->factors) + sizeof(int32_t) * (size_t)g->domain->particles->count +
          (size_t)g->element_count * (sizeof *g->corner + CORNERS * 3 * sizeof(double)) +
          (size_t)g->corner_count * sizeof *g->touching;
 }
@@ -223,7 +218,7 @@ static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double sti
   if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
 }
 
-static void add_elements(CoarseGrid *g, double factor)
+static void add_elements(CoarseGrid *g, double factor, bool linearised)
 {
   const int size = g->axes << g->axes;
   ElementStiffness unit;
@@ -234,7 +229,7 @@ static void add_elements(CoarseGrid *g, double factor)
     double lame = 0, shear = 0;
     for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
       const double weight = factor * g->domain->particles->volume[g->place[n]] / volume;
-      const ElementModuli moduli = element_moduli(g->domain, g->place[n]);
+      const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
       lame += weight * moduli.lame;
       shear += weight * moduli.shear;
     }
@@ -321,55 +316,64 @@ static int32_t neighbour(const CoarseGrid *g, int64_t corner, int way)
   return -1;
 }
 
-/** Rows above the diagonal, column by column. */
-static void fill(const CoarseGrid *g, cholmod_sparse *matrix)
+/** The equations up to the diagonal, row by row. */
+typedef struct CornerMatrix {
+  int64_t *first, *column;
+  double *value;
+} CornerMatrix;
+
+static void corner_matrix_fill(const CoarseGrid *g, const CornerMatrix *m)
 {
-  int *first = matrix->p, *row = matrix->i, count = 0;
-  double *value = matrix->x;
+  int64_t count = 0;
   for (int64_t n = 0; n < g->corner_count; ++n) {
     int32_t beside[NEIGHBOURS];
     for (int way = 0; way < NEIGHBOURS; ++way) beside[way] = neighbour(g, n, way);
     for (int r = 0; r < g->axes; ++r) {
-      first[n * g->axes + r] = count;
+      m->first[n * g->axes + r] = count;
       for (int way = 0; way < NEIGHBOURS; ++way)
         for (int s = 0; s < g->axes && beside[way] >= 0; ++s) {
           if (beside[way] == n && s > r) break;
-          row[count] = beside[way] * g->axes + s;
-          value[count++] =
+          m->column[count] = beside[way] * g->axes + s;
+          m->value[count++] =
               g->stiffness[(n * NEIGHBOURS + way) * 9 + 3 * r + s] * (beside[way] == n && s == r ? 1 + added : 1);
         }
     }
   }
-  first[g->corner_count * g->axes] = count;
+  m->first[g->corner_count * g->axes] = count;
 }
 
-static int factor(CoarseGrid *g, Error *error)
+static int coarse_grid_factor(CoarseGrid *g, Error *error)
 {
-  const size_t size = (size_t)(g->corner_count * g->axes);
-  cholmod_sparse *matrix = cholmod_allocate_sparse(size, size, size * (size_t)(NEIGHBOURS * g->axes), true, true, 1,
-                                                   CHOLMOD_REAL, &g->common);
-  if (matrix) fill(g, matrix);
-  if (matrix && !g->factor) g->factor = cholmod_analyze(matrix, &g->common);
-  if (matrix && g->factor) cholmod_factorize(matrix, g->factor, &g->common);
-  cholmod_free_sparse(&matrix, &g->common);
-  if (!g->right) g->right = cholmod_zeros(size, 1, CHOLMOD_REAL, &g->common);
-  if (!g->factor || !g->right || g->common.status < 0)
-    return error_add(error, BRECCIA_FAILURE, "out of memory: coarse grid");
-  return BRECCIA_OK;
+  const size_t size = (size_t)(g->corner_count * g->axes), most = size * (size_t)(NEIGHBOURS * g->axes);
+  CornerMatrix m = {memory_zeroed(size + 1, sizeof *m.first, "coarse grid", error),
+                    memory_reserved(most, sizeof *m.column, "coarse grid", error),
+                    memory_reserved(most, sizeof *m.value, "coarse grid", error)};
+  int status = m.first && m.column && m.value ? BRECCIA_OK : BRECCIA_FAILURE;
+  bool indefinite;
+  if (!g->answer) g->answer = memory_zeroed(size, sizeof *g->answer, "coarse grid", error);
+  if (!g->answer) status = BRECCIA_FAILURE;
+  if (!status) {
+    corner_matrix_fill(g, &m);
+    status = factors_compute(g->factors, &(SparseMatrix){(int64_t)size, m.first, m.column, m.value}, true, &indefinite,
+                             error);
+  }
+  free(m.first);
+  free(m.column);
+  free(m.value);
+  return status;
 }
 
 int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, const double *turning,
-                        double stiffness_share, double mass_factor, Error *error)
+                        bool linearised, double stiffness_share, double mass_factor, Error *error)
 {
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
   g->turning = turning;
-  add_elements(g, 1 + stiffness_share);
+  add_elements(g, 1 + stiffness_share, linearised);
   unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
-  if (!status) status = library_memory(error);
-  if (!status) status = factor(g, error);
+  if (!status) status = coarse_grid_factor(g, error);
   free(g->stiffness);
   g->stiffness = NULL;
   return status;
@@ -460,7 +464,7 @@ static void gather_corner(void *context, int64_t n)
       const int32_t at = g->touching[n][c];
       if (at >= 0) sum += g->parts[(int64_t)(at / CORNERS) * CORNERS * 3 + CORNERS * k + at % CORNERS];
     }
-    ((double *)g->right->x)[n * g->axes + k] = sum;
+    g->answer[n * g->axes + k] = sum;
   }
 }
 
@@ -491,8 +495,7 @@ void coarse_grid_correct(CoarseGrid *g, double *const f[MOTIONS], double *const 
   Transfer t = {g, f, v, NULL};
   team_each(g->element_count, gather_element, &t);
   team_each(g->corner_count, gather_corner, g);
-  if (!cholmod_solve2(CHOLMOD_A, g->factor, g->right, NULL, &g->answer, NULL, &g->work[0], &g->work[1], &g->common))
-    return;
-  t.answer = g->answer->x;
+  if (factors_solve(g->factors, g->answer, NULL)) return;
+  t.answer = g->answer;
   team_each(g->element_count, spread_element, &t);
 }

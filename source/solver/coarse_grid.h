@@ -2,8 +2,8 @@
  *
  * Elements are bilinear or trilinear, as stiff as the particles in them: their moduli, by their volume over the element's. Elements without particles have no
  * stiffness, and their corners no unknowns. What is held holds the grid by springs at the particles. Displacements of particles are interpolated
- * from the corners of their element, so that lattices, scattered particles, holes and several materials are all alike. Its equations
- * are factored by CHOLMOD (Chen et al. 2008, ACM Trans. Math. Softw. 35, 22) without supernodes: no BLAS, so the same bits with any. */
+ * from the corners of their element, so that lattices, scattered particles, holes and several materials are all alike. A library
+ * factors its equations (factors.h). */
 #ifndef BRECCIA_SOLVER_COARSE_GRID_H
 #define BRECCIA_SOLVER_COARSE_GRID_H
 
@@ -15,13 +15,14 @@ typedef struct CoarseGrid CoarseGrid;
 CoarseGrid *coarse_grid_create(const Domain *domain, Error *error);
 void coarse_grid_destroy(CoarseGrid **grid);
 
-/** Makes its equations again, of the state at which the domain was linearised, and factors them.
+/** Assembles and factors the equations of the grid.
  *  @param[in] diagonal     [places] stiffness of each particle against being moved alone: how stiffly the grid is held where the particle is;
  *                          infinite: the particle has no part in it. Borrowed until the next time
  *  @param[in] turning      [places] the same against being turned; NULL without rotations
+ *  @param[in] linearised  true: by the tangents at which the domain was linearised; false: by the elastic moduli
  *  @param[in] stiffness_share, mass_factor  as in LinearSolver */
 int coarse_grid_prepare(CoarseGrid *grid, const Unknowns *unknowns, const double *diagonal, const double *turning,
-                        double stiffness_share, double mass_factor, Error *error);
+                        bool linearised, double stiffness_share, double mass_factor, Error *error);
 
 /** Adds to displacements v of all particles what the grid answers to forces f, by the team. Particles turn as the grid does where they are, by half of the
  *  curl of its displacements, and their moments act on it so. */

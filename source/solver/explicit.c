@@ -105,7 +105,8 @@ static void list_state(Solver *run, StateList *list)
     state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
                      s->domain->particles->places);
   if (s->viscous.time > 0)
-    particles_state_rotations(s->domain->particles, "drag of stiffness", "stress", STATE_TRIED, s->viscous.drag, list);
+    particles_state_rotations(s->domain->particles, "moment of stiffness drag", "stress", STATE_TRIED, s->viscous.drag,
+                              list);
   state_add_number(list, "period", "time", STATE_COMMITTED, &s->period);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
@@ -146,11 +147,18 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
+/** Returns true if `leaves` strains out suffices for a step in place: explicit_step_back divides the velocity by 1 - c dt / 2, which must
+ *  stay away from zero. */
+static bool explicit_may_step_in_place(const Explicit *s, bool leaves)
+{
+  return leaves && explicit_mass_damping(s) * s->clock->time_step < 1.5;
+}
+
 /** Accelerations, what stiffness damping and work at faces take, and what a step that fails gives back. */
 static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  const int arrays = s->domain->may_leave_tensors ? 0 : 2 * s->row_count;
+  const int arrays = explicit_may_step_in_place(s, s->domain->may_leave_tensors) ? 0 : 2 * s->row_count;
   const size_t begun = (size_t)arrays * sizeof(double) * (size_t)s->domain->particles->places;
   return vectors_bytes(s->domain->particles) + begun + stiffness_damping_bytes(&s->viscous, s->domain) +
          face_work_bytes(&s->face_work) + solver_kept_bytes(run, KEPT_BUT_MOTION);
@@ -181,9 +189,9 @@ static int make_room(Explicit *s, Solver *run, Error *error)
 {
   static const char label[] = "motion before a step";
   int failed = solver_keep(run, KEPT_BUT_MOTION, &s->before, error);
-  if (s->domain->leaves_tensors) give_up_begun(s);
-  for (int r = 0; r < s->row_count && !failed && !s->domain->leaves_tensors && !s->begun.displacement[s->rows[r]];
-       ++r) {
+  const bool in_place = explicit_may_step_in_place(s, s->domain->leaves_tensors);
+  if (in_place) give_up_begun(s);
+  for (int r = 0; r < s->row_count && !failed && !in_place && !s->begun.displacement[s->rows[r]]; ++r) {
     const int64_t places = s->domain->particles->places;
     failed = !(s->begun.velocity[s->rows[r]] = places_array(places, label, error)) ||
              !(s->begun.displacement[s->rows[r]] = places_array(places, label, error));

@@ -61,31 +61,38 @@ static bool holds_too_much(const Ledger *l)
   return !(l->kinetic <= 1.5 * l->mass * pow(beyond_all * (l->wave + l->given), 2));
 }
 
-static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, Error *error)
+static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, const Units *units, Error *error)
 {
   const Particles *p = d->particles;
   double speed, turning;
   int64_t i = fastest_place(p, 0, ROTATION, &speed);
-  char place[120], what[240];
+  char place[120], what[300], unit[32];
+  units_name(units, dimension_find("velocity"), unit, sizeof unit);
   if (l->fast_steps > 0) speed = l->fastest; /* in the middle of the step */
   const bool moves = speed > most_of_speed * (l->wave + l->given) || p->motions <= ROTATION;
   if (!moves) i = fastest_place(p, ROTATION, p->motions, &turning);
   snprintf(place, sizeof place, "particle %d at [%g, %g, %g]", p->number[i], p->position[0][i], p->position[1][i],
            p->position[2][i]);
   if (moves)
-    snprintf(what, sizeof what, "%s moves at %.3g", place, speed);
+    snprintf(what, sizeof what, "%s moves at %.3g %s", place, speed, unit);
   else
-    snprintf(what, sizeof what, "%s turns at %.3g, so that kinetic energy is as if all mass moved at %.3g", place,
-             turning, sqrt(2 * l->kinetic / l->mass));
+    snprintf(what, sizeof what, "%s turns at %.3g 1/%s, so that kinetic energy is as if all mass moved at %.3g %s",
+             place, turning, clock->time_unit, sqrt(2 * l->kinetic / l->mass), unit);
   return error_add(
       error, BRECCIA_FAILURE,
       "step %lld (time %g %s): the computation has blown up: %s, more than %g "
-      "times the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time "
+      "times the waves of the materials (%.4g %s) and the speeds at the start and prescribed (%.4g %s) together; the "
+      "time "
       "step of %.4g %s (stable step %.4g %s) is too long for what happens, or bonds that break or close give more than "
       "they "
       "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, clock->time_unit, what, most_of_speed, l->wave, l->given, clock->time_step,
-      clock->time_unit, clock->stable, clock->time_unit);
+      (long long)clock->step, clock->time, clock->time_unit, what, most_of_speed, l->wave, unit, l->given, unit,
+      clock->time_step, clock->time_unit, clock->stable, clock->time_unit);
+}
+
+void ledger_give_up(Ledger *l)
+{
+  l->unsound_steps = LASTING;
 }
 
 bool ledger_has_blown_up(const Ledger *l)
@@ -114,7 +121,7 @@ void ledger_note_paid(Ledger *l)
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
  *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. Works that have grown beyond all numbers
  *  say nothing, and speeds explode long before; so they are looked at by themselves. */
-int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
+int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *units, Error *error)
 {
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_friction(&d->forces);
@@ -125,7 +132,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
   if (is_too_fast(l) || holds_too_much(l)) {
     l->unsound_steps = LASTING;
     l->blown_up = true;
-    return tell_too_fast(l, d, clock, error);
+    return tell_too_fast(l, d, clock, units, error);
   }
   if (l->unsound_steps < LASTING) return BRECCIA_OK;
   return error_add(

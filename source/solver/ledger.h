@@ -60,7 +60,10 @@ void ledger_note_paid(Ledger *ledger);
 
 /** After a step, with what was paid noted: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
  *  the speeds; or if particles have become faster than anything explains (docs/theory.md 7). */
-int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
+int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, const Units *units, Error *error);
+
+/** Marks the state as one that nobody goes on from: no checkpoint is written of it. */
+void ledger_give_up(Ledger *ledger);
 
 /** Whether particles have become faster than anything explains, so that the state is no result. */
 bool ledger_has_blown_up(const Ledger *ledger);

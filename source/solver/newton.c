@@ -172,8 +172,9 @@ void newton_state(Newton *n, StateList *list)
 static bool keeps_factors(const Newton *n)
 {
   const bool at_zero =
-      !n->domain->particles->orientation[0]; /* those count rotations from where particles have turned to */
-  return n->beside && !n->follows && at_zero && domain_is_elastic(n->domain) && !n->domain->forces.count;
+      !n->domain->particles->orientation[0];    /* those count rotations from where particles have turned to */
+  const bool strained = n->domain->strains.any; /* the stiffness without displacements changes with free strains */
+  return n->beside && !n->follows && at_zero && !strained && domain_is_elastic(n->domain) && !n->domain->forces.count;
 }
 
 /** Exchanges the displacements held for others. */

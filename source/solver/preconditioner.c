@@ -138,7 +138,8 @@ int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[M
                            Error *error)
 {
   find_diagonal(m, s, v, kv);
-  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, m->turning, s->stiffness_share, s->mass_factor, error);
+  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, m->turning, !s->elastic, s->stiffness_share,
+                             s->mass_factor, error);
 }
 
 /* ---- as it is used ---- */

@@ -1,6 +1,7 @@
 #include "solver/solver.h"
 
 #include "base/trap.h"
+#include "solver/distortion.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -394,6 +395,13 @@ static int tell_trap(const Trap *trap, int64_t step, double time, const char *un
   return status;
 }
 
+/** Returns true at the ends of stages and now and then before: looking takes as long as evaluating forces. */
+static bool solver_looks_at_distortion(const Solver *s)
+{
+  const int64_t every = s->type->few_steps ? 10 : 100;
+  return s->clock.ended || s->clock.step % every == 0;
+}
+
 int solver_advance(Solver *s, Text *warning, Error *error)
 {
   Trap trap = {0};
@@ -412,7 +420,46 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   ledger_note_paid(&s->ledger);
   if (failed) return failed;
   s->ledger.trapped = trapped;
-  return trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, error);
+  int status = trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, s->reader->units, error);
+  if (!status && solver_looks_at_distortion(s) && (status = distortion_watch(s->domain, &s->clock, error)))
+    ledger_give_up(&s->ledger);
+  return status;
+}
+
+/** Adds -1/2 of the internal forces' work on changes of displacements, that is half of the work done on bonds. */
+static double solver_half_work(const Domain *d, double *const change[MOTIONS])
+{
+  const Particles *p = d->particles;
+  double work = 0;
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) work -= 0.5 * d->counted[i] * p->internal[k][i] * change[k][i];
+  return work;
+}
+
+int solver_take_motion(Solver *s, double *const displacement[MOTIONS], double *const velocity[MOTIONS], Error *error)
+{
+  const Domain *d = s->domain;
+  const Particles *p = d->particles;
+  double kinetic = 0, bonds = 0;
+  bool moved = false, kicked = false;
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double before = velocity[k][i], now = p->velocity[k][i];
+      kicked |= now != before;
+      kinetic += 0.5 * p->inertia[k][i] * d->counted[i] * (now * now - before * before);
+      displacement[k][i] = p->displacement[k][i] - displacement[k][i];
+      moved |= displacement[k][i] != 0;
+    }
+  if (!moved && !kicked) return BRECCIA_OK;
+  if (s->type->rests) kinetic = 0; /* nothing moves there, whatever is written */
+  bonds = solver_half_work(d, displacement);
+  const int status = s->type->begin(s, error);
+  if (status) return status;
+  bonds += solver_half_work(d, displacement);
+  s->ledger.bond_work += bonds;
+  s->ledger.external_work += bonds + kinetic;
+  ledger_note_paid(&s->ledger);
+  return BRECCIA_OK;
 }
 
 void solver_put_arrays_back(Solver *s)

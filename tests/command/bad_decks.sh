@@ -49,6 +49,12 @@ refuse 's/{field: damage}$/{field: damage, inside: {union: [{sphere: {centre: [0
 refuse 's/{field: damage}$/{curve: "tip.x : tip.y", inside: {sphere: {centre: [0, 0, 0], radius: 1}}}/' 24:30 'inside: a curve of histories has no use for it; leave it out'
 refuse 's/spacing: 0.1$/spacing: 3 s/' 9:14 "has the wrong dimension; expected a length, like '1.5 m'"
 refuse 's/spacing: 0.1$/spacing: 0.1 parsec m/' 9:14 "has the wrong dimension"
+refuse 's/^title: .*/&\nvariables: {W: 0.1 m}/; s/spacing: 0.1$/spacing: "${W}^2"/' 10:15 "'0.01 m2' has the wrong dimension; a length is left over; expected a length"
+refuse 's/spacing: 0.1$/spacing: "${sin(1 m)}"/' 9:17 "sin takes an angle, like sin(30 deg), or a plain number in radians, not a length"
+printf 'a\nb\nACCELERATION IN UNITS OF FURLONGS\nNPTS= 2, DT= 1.00D-02 SEC\n0 1\n' > "$work/motion.AT2"
+refuse 's/ramp to: 1 ms/file: {name: motion.AT2}/' 18:73 "motion.AT2:3: the unit 'FURLONGS' is unknown; expected g, cm/s2"
+printf '0\n1\n2\n' > "$work/values.txt"
+refuse 's/ramp to: 1 ms/file: {name: values.txt}/' 18:73 "values.txt:1: holds values without times, found '0'; give the step between them ('time step' in a deck"
 refuse 's/spacing: 0.1$/spacing: 0.1 smoots/' 9:14 "unit 'smoots' is not known"
 refuse 's/spacing: 0.1$/spacing: -0.1/' 9:14 'is out of range; it must be greater than 0'
 refuse 's/spacing: 0.1$/spacing: wide/' 9:14 'is not a number'
@@ -89,7 +95,7 @@ refuse 's/end: {face: x+, layers: 2}/end: {any of: [end, {face: x-}]}/' 12:18 "t
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: fcc/' 10:14 "'fcc' is not known; did you mean 'face-centred cubic'?"
 refuse 's/body force: \[1, 0, 0\]/body force: [1, 0, 0], force: [1, 0, 0]/' 18:50 "more than one of"
 refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
-refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; expected a force per volume'
+refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; a volume is left over; expected a force per volume'
 refuse 's/ramp to: 1 ms/table: [[0, 0], [1, 1], [1, 2]]/' 18:85 'times must grow'
 refuse 's/horizon: 3.015 spacings/horizon: 0.05/' 15:25 'so that no particle has a neighbour'
 refuse 's/horizon: 3.015 spacings/space: plane stress/' 15:23 'needs a square or hexagonal lattice'
@@ -413,8 +419,8 @@ sed "$steel; s/^failure: .*/&\nbars: {r: {$along, diameter: 16 mm, material: ste
 # bar KEYS PLACE WORDS [EDIT]: the good deck with a bar of these keys
 bar() { refuse "$steel; s/^failure: .*/&\nbars: {r: {$1, material: steel}}/${4:+; $4}" "$2" "$3"; }
 bar "$along, diameter: 0" 17:72 'diameter: 0 is out of range; it must be greater than 0'
-bar "$along, diameter: 16 mm2" 17:72 "diameter: '16 mm2' has the wrong dimension; expected a length"
-bar "$along, area: 2 cm" 17:68 "area: '2 cm' has the wrong dimension; expected an area"
+bar "$along, diameter: 16 mm2" 17:72 "diameter: '16 mm2' has the wrong dimension; a length is left over; expected a length"
+bar "$along, area: 2 cm" 17:68 "area: '2 cm' has the wrong dimension; a length is missing; expected an area"
 bar "$along" 17:8 "bar: none of 'diameter', 'area' is given; give exactly one"
 bar "$along, diameter: 16 mm, number: 0" 17:87 'number: 0 is out of range'
 bar "$along, diameter: 16 mm, number: 100000000000000000000" 17:87 'is not a whole number'

@@ -4,6 +4,21 @@ cd "$work"
 
 "$breccia" --version > out; equal "version: status" $? 0
 contains "version" "$(cat out)" "breccia 0."
+# Commit, vector lanes, libraries, licence; by default nothing that puts the command under the GPL, neither told nor linked.
+for words in "commit: " "on this processor: " "HDF5 1." "libfyaml " "zlib " "licence: " "LICENSES.md"; do contains "version" "$(cat out)" "$words"; done
+commit=$(git -C "$source" rev-parse --short=12 HEAD 2> /dev/null || echo unknown)
+contains "version" "$(cat out)" "commit: $commit"
+if ! grep -qs 'BRECCIA_SUITESPARSE:BOOL=ON' "$build/CMakeCache.txt"; then
+  contains "version" "$(cat out)" "libraries: MUMPS "
+  for words in CHOLMOD UMFPACK SuiteSparse GPL; do
+    checks=$((checks + 1))
+    grep -q "$words" out && fail "--version names $words"
+  done
+  ldd "$breccia" > linked 2> /dev/null || readelf -d "$breccia" > linked
+  contains "linked libraries" "$(cat linked)" "mumps"
+  checks=$((checks + 1))
+  grep -E "lib(cholmod|umfpack|klu|spqr)" linked && fail "the command is linked with a library under the GPL"
+fi
 "$breccia" --help > out; equal "help: status" $? 0
 for verb in run check modes new plot spectrum models material calibrate schema completion; do
   contains "help" "$(cat out)" "  $verb "

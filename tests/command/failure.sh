@@ -25,6 +25,11 @@ grep -q '^stopped: the run ended before its time' out || fail "what stopped mean
 "$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > one 2> errors || fail "one at a time: $(cat one errors)"
 grep -q 'pull-50-kN: was done' one || fail "cases that were done: $(cat one)"
 bracket one | awk '{exit !($1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.9 + 1e-3)}' || fail "one at a time: $(cat one errors)"
+# The same bar pushed: loads below zero are as many and as large.
+"$breccia" failure bar.yaml --load 'variables.pull=-50 kN:-200 kN' --within 0.1 --jobs 1 --output pushed > pushed.out 2> errors
+equal "a bar that is pushed: status" $? 0
+equal "a bar that is pushed" "$(sed -n 's/^fails between -\([0-9.]*\)[^(]* and -\([0-9.]*\).*/\1 \2/p' pushed.out)" "$(bracket one)"
+equal "loads of a bar that is pushed" "$(tail -n +2 pushed/failure.csv | cut -d, -f1,2)" "$(tail -n +2 bar-failure/failure.csv | cut -d, -f1,2 | sed 's/^/-/')"
 # Concrete as a lattice of beams, pulled by a ramp of two periods and held for one more: 360 N a particle (Tuniki 2012, Table 4.1).
 cat > plate.yaml <<'Y'
 variables: {load: 300 N, period: 0.66 ms}

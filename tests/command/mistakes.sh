@@ -132,6 +132,26 @@ rm unread/checkpoint.h5 && mkdir unread/checkpoint.h5
 refused "a checkpoint that cannot be read" "unread/checkpoint.h5: cannot be read: Is a directory" run bar.yaml --output unread --restart
 rm unread/results.vtkhdf && mkfifo unread/results.vtkhdf
 refused "results that are a pipe" "unread/results.vtkhdf: it is a pipe or a device" plot unread --field displacement
+# ---- links and pipes in a folder of results lead nowhere ----
+rm -rf linked; cp -r bar linked
+echo precious > kept
+for name in results.vtkhdf results.vtkhdf.part end.csv deck.yaml summary.json; do
+  rm -f linked/$name; ln -s ../kept linked/$name
+  refused "a link $name" "linked/$name: cannot be written: it is a link; remove it" run bar.yaml --output linked
+  rm linked/$name; mkfifo linked/$name
+  refused "a pipe $name" "linked/$name: cannot be written: it is a pipe or a device" run bar.yaml --output linked
+  rm linked/$name; [ ! -e bar/$name ] || cp bar/$name linked/
+done
+for name in checkpoint.h5 end.csv results.vtkhdf; do
+  mv linked/$name kept-$name; ln -s ../kept-$name linked/$name
+  refused "a link $name, restart" "linked/$name: " run bar.yaml --output linked --restart
+  rm linked/$name; mv kept-$name linked/$name
+done
+rmdir linked/pictures 2> /dev/null; rm -rf linked/pictures; mkdir elsewhere; ln -s ../elsewhere linked/pictures
+"$breccia" run bar.yaml --output linked --set 'pictures=[{field: displacement}]' > out 2> errors
+contains "a link to a folder of pictures" "$(cat errors)" "linked/pictures: the folder cannot be made: it is a link; remove it"
+equal "a folder behind a link" "$(ls elsewhere)" ""
+equal "a file behind a link" "$(cat kept)" precious
 
 # ---- tables that would be read wrongly ----
 zero() { printf "$1" | tr Z '\0' > zero.csv; }

@@ -170,6 +170,56 @@ def the_point_that_cannot_be_followed_is_named():
     end(process)
 
 
+def materials_are_in_the_stage_that_was_asked_for():
+    process, address = start(stream("stages"))
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    for kind in ("PressureIndependMultiYield", "PressureDependMultiYield03"):
+        command = f"command: nDMaterial {kind} $tag 3\n"
+        line.expect(f"{kind} stays elastic until its stage is set: give 'stage: 1' (plastic)", CREATE, command.encode(), 1)
+        for stage, stress in ((0, 3 * YIELD_STRESS), (1, YIELD_STRESS)):
+            line.expect(MADE, CREATE, f"{command}stage: {stage}\n".encode(), 1)
+            stress_is(f"{kind} in stage {stage}", line.pull(0, 3 * YIELD_STRAIN), stress)
+    command = b"command: nDMaterial ManzariDafalias $tag 3\n"
+    for stage, stress in ((b"stage: 0\n", 3 * YIELD_STRESS), (b"", YIELD_STRESS)):  # the stage of a session before does not stay
+        line.expect(MADE, CREATE, command + stage, 1)
+        stress_is(f"ManzariDafalias, {stage}", line.pull(0, 3 * YIELD_STRAIN), stress)
+    line.expect("Bars has no stages: leave 'stage' out", CREATE, BARS + b"stage: 1\n", 1)
+    for kind, words in (
+        ("CycLiqCP", "stays elastic until its stage is set"),
+        ("CycLiqCPSP", "stays elastic until its stage is set"),
+        ("PM4Sand", "knows plane strain only"),
+        ("StressDensityModel", "OpenSees offers no way to set its stage from outside"),
+        ("FluidSolidPorous", "is made of another material by its tag"),
+        ("MultiYieldSurfaceClay", "is unknown"),  # plastic from the beginning in OpenSees: its parameter 1 is a modulus
+    ):
+        line.expect(f"{kind}", CREATE, f"command: nDMaterial {kind} $tag 3\n".encode(), 1)
+        line.expect(words, CREATE, f"command: nDMaterial {kind} $tag 3\n".encode(), 1)
+    line.expect("PyLiq1 takes pore pressures from elements", CREATE, b"command: uniaxialMaterial PyLiq1 $tag 1\n", 1)
+    end(process)
+
+
+def materials_that_need_elements_are_refused():
+    process, address = start(stream("elements"))
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    line.expect("QzLiq1 takes pore pressures from elements", CREATE, b"command: uniaxialMaterial QzLiq1 $tag 1\n", 1)
+    line.expect("Bar has no stages", CREATE, BARS + b"stage: 1\n", 1)
+    end(process)
+
+
+def lengths_that_are_none_are_refused():
+    process, address = start(stream("lengths"))
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    command = BARS.rstrip() + b" $length\n"
+    for length in (b"1" * 400, b"1e400", b"nan", b"-1", b"0", b"long", b""):
+        line.expect("the client told none that is a finite number above 0", CREATE, command + b"length: " + length + b"\n", 1)
+    line.expect(MADE, CREATE, command + b"length: 0.1\n", 1)
+    stress_is("a client with a length is served", line.pull(0, YIELD_STRAIN), YIELD_STRESS)
+    end(process)
+
+
 def strangers_cannot_speak_for_a_client():
     process, address = start("udp://127.0.0.1:0")
     client, stranger = Line(address), Line(address)
@@ -276,8 +326,11 @@ def main():
         addresses_are_refused_in_one_line()
         if TCL:  # no point of the other stand-in fails
             the_point_that_cannot_be_followed_is_named()
+            materials_that_need_elements_are_refused()
         if not TCL:  # it listens over TCP only
+            lengths_that_are_none_are_refused()
             strangers_cannot_speak_for_a_client()
+            materials_are_in_the_stage_that_was_asked_for()
             only_sockets_of_their_own_are_removed()
     finally:
         for process in processes:

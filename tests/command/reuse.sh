@@ -87,7 +87,7 @@ refuse() {
   mv kept library
   mv kept.yaml block.yaml
 }
-refuse library/stone.yaml 's/20 MPa/20 MN/' "library/stone.yaml:2:58: Young modulus: '20 MN' has the wrong dimension; expected a stress, like '1.5 kPa' or 1.5 (plain numbers are in Pa)"
+refuse library/stone.yaml 's/20 MPa/20 MN/' "library/stone.yaml:2:58: Young modulus: '20 MN' has the wrong dimension; an area is left over; expected a stress, like '1.5 kPa' or 1.5 (plain numbers are in Pa)"
 refuse library/stone.yaml 's/density/densty/' "library/stone.yaml:1:24: material: unknown key 'densty'; did you mean 'density'?
 library/stone.yaml:2:24: material: unknown key 'densty'; did you mean 'density'?"
 refuse library/stone.yaml 's/{E}/{G}/' "library/stone.yaml:1:63: Young modulus: there is no variable 'G'; the deck's variables are n, width, dx, E"
@@ -98,6 +98,6 @@ refuse library/materials.yaml 's/stone.yaml/../' "library/materials.yaml:1:22: i
 refuse block.yaml 's/include: .*/include: block.yaml/' "block.yaml:2:10: include: block.yaml: includes itself"
 refuse block.yaml 's/include: .*/include: {a: 1}/' "block.yaml:2:1: include: expected the name of a file, or a list of names"
 refuse block.yaml 's/{2\*width}/{2.01*width}/' "block.yaml:5:65: box: its size along x, 0.402, is not a whole number of spacings of 0.05 (it is 8.04 of them); a spacing of 0.05025 fits"
-refuse block.yaml 's/0.1 m\/s/${width}/' "block.yaml:8:38: velocity: '0.2 m' has the wrong dimension; expected a velocity, like '1.5 m/s' or 1.5 (plain numbers are in m/s) (written '\${width}')"
+refuse block.yaml 's/0.1 m\/s/${width}/' "block.yaml:8:38: velocity: '0.2 m' has the wrong dimension; a time is left over; expected a velocity, like '1.5 m/s' or 1.5 (plain numbers are in m/s) (written '\${width}')"
 refuse block.yaml 's/dx, 10 cm/dx, n/' "block.yaml:5:117: a length and a plain number cannot be compared; give every quantity its unit"
 finish

@@ -59,7 +59,7 @@ equations() { timeout 120 "$breccia" "$@" bar.yaml --set 'body.b.shape.box.parti
 if [ -z "${BRECCIA_SANITIZED:-}" ] && ldd "$breccia" | grep -q openblas; then # the sanitizers take more than is allowed here
   for verb in run modes; do
     told=0
-    for most in $(seq 80000 10000 260000); do # kB; with less the loader does not find the room for the libraries
+    for most in $(seq 100000 10000 260000); do # kB; with less loader and HDF5 lack the room for themselves
       (ulimit -S -v "$most" && OMP_NUM_THREADS=1 equations $verb) > out 2> errors
       status=$?
       [ $status = 127 ] && continue

@@ -341,6 +341,7 @@ told "breccia spectrum: --smoothing: 'much' is not a number" spectrum a --smooth
 told "breccia spectrum: --periods: '1' should be two numbers with a colon between" spectrum a --periods 1
 told "breccia: --count: '0' is not a whole number from 1 to 1000000" spectrum a --count 0
 told "no-such.AT2: No such file or directory" spectrum no-such.AT2
+told "breccia spectrum: --time-step: '-1' is not a positive number of seconds" spectrum no-such.AT2 --time-step -1
 told "breccia: --steps: '0' is not a whole number of at least 1" run block.yaml --steps 0
 told "breccia: --threads: '99999999999999999999' is not a whole number from 1 to 2147483647" run block.yaml --threads 99999999999999999999
 told "breccia run: --output needs a value; see 'breccia run --help'" run --output

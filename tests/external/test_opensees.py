@@ -354,6 +354,8 @@ def refusals_are_told(client):
         "nDMaterial ElasticIsotropic3D $tag": "ElasticIsotropic3D",
         "nDMaterial PM4Sand $tag 0.5 500. 0.5 1.7": "knows plane strain only",
         "nDMaterial ElasticIsotropic3D 7 1. 0.": "a command is",
+        LAWS["PressureIndependMultiYield"]: "PressureIndependMultiYield stays elastic until its stage is set: give 'stage: 1'",
+        "nDMaterial FluidSolidPorous $tag 3 1 2.2e6": "is made of another material by its tag",
         "__import__('os') x $tag": "a command is",
         "nDMaterial ElasticIsotropic3D $tag 1. 0.\nstage: plastic": "a stage is 0 (elastic) or 1 (plastic)",
         "nDMaterial ElasticIsotropic3D $tag 1. 0.\nstage: 1": "ElasticIsotropic3D has no stages",
@@ -375,6 +377,24 @@ def refusals_of_tcl_are_told(client):
         refusal_is_told(client, command, words)
 
 
+def staged_materials_yield(client):
+    """At 5 % of shear no stress is beyond the strength, which a material that stayed elastic would exceed twenty times."""
+    for name, command in {
+        "PressureIndependMultiYield": LAWS["PressureIndependMultiYield"],
+        "PressureDependMultiYield03": "nDMaterial PressureDependMultiYield03 $tag 3 1.7 6e4 1.3e5 33. 0.1 101. 0.5 26. 0.03 3. 0.2 0. 0. 0.15 3. 0. 20",
+        "SAniSandMS": "nDMaterial SAniSandMS $tag 110. 0.05 0.7 1.27 0.712 0.049 0.845 0.27 101.3 0.01 5.95 1.01 2. 1.06 1.17 0.0005 260. 1. 1.6",
+        "MultiYieldSurfaceClay": "nDMaterial MultiYieldSurfaceClay $tag 3 1.5 6e4 1e5 37. 0.1 0. 100. 0. 20",
+    }.items():
+        stage = "stage: 1\n" if name.startswith("Pressure") else ""
+        header, _ = client.ask(3, f"command: {command}\n{stage}".encode(), count=1)
+        client.session = header[7]
+        for step in range(1, 51):
+            pressed = 0 if "Clay" in name or "Indep" in name else -1e-3
+            stress = client.trial([pressed] * 3 + [step * 1e-3, 0, 0], 6, flags=int(step > 1))
+        pressure = -sum(stress[:3]) / 3
+        check(f"{name} yields", abs(stress[3]) < 60 + 1.5 * pressure, f"{stress}")
+
+
 def refusal_is_told(client, command, words):
     try:
         client.ask(3, f"command: {command}\n".encode(), count=1)
@@ -388,7 +408,7 @@ def runs_tell_what_opensees_said():
     with open(f"{WORK}/clay-away.yaml", encoding="utf-8") as file:
         text = file.read()
     for command, words in {
-        "nDMaterial PressureIndependMultiYield $tag 3 1.5": "it said: WARNING insufficient arguments",
+        "nDMaterial PressureIndependMultiYield $tag 3 1.5, stage: 1": "it said: WARNING insufficient arguments",
         "nDMaterial TruncatedDP $tag 1 1.5 1.0e5 6.0e4 50. 0.2": "its last words:",
     }.items():
         with open(f"{WORK}/refused.yaml", "w", encoding="utf-8") as file:
@@ -523,6 +543,7 @@ def main():
     client.create("Steel01", 1)
     check("the Python package cannot iterate along bonds, and says so", not client.iterates)
     refusals_are_told(client)
+    staged_materials_yield(client)
     a_client_at_a_time(client)
     client.end()
     client = Client()

@@ -102,6 +102,25 @@ solve: {static: {increments: 3}}
 results: {number: 1, fields: [displacement, stress]}
 """
 
+BARS = """\
+units: {length: m, force: kN, time: s}
+materials:
+  c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}
+  s: {model: steel-bilinear, density: 7.85, Young modulus: 200 GPa, yield stress: 300 MPa, hardening ratio: 0.01}
+body: {beam: {material: c, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {particles: [10, 5], first particle: [0, 0]}}}}
+bars:
+  low: {points: [[0.01, 0.02], [0.17, 0.02]], diameter: 12 mm, number: 2, material: s, bond: {compressive strength: 30 MPa, rib spacing: 5 mm}}
+  links: {points: [[0.05, 0.02], [0.05, 0.06]], diameter: 6 mm, material: s, repeat: {along: [1, 0], pitch: 0.05, number: 2}}
+peridynamics: {formulation: bond-based, space: plane stress}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 2}, velocity: [0.5, free]}
+solve: {explicit: {steps: 8}}
+watch: {low: {bar: low, every: 2}, work: {energy: yes}}
+results: {number: 1, checkpoint steps: 3, fields: [displacement]}
+pictures: []
+"""
+
 STAGES = REST.replace("solve: {static: {increments: 3}}", """\
 solve:
   - {name: pull, explicit: {steps: 3}}
@@ -134,7 +153,7 @@ def write_relation(folder, name):
 
 
 def write_decks(folder):
-    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("rest", REST), ("stages", STAGES), ("torn", TORN), ("test", TEST)):
+    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("rest", REST), ("bars", BARS), ("stages", STAGES), ("torn", TORN), ("test", TEST)):
         with open(os.path.join(folder, name + ".yaml"), "w") as file:
             file.write(words)
     with open(os.path.join(folder, "grains.csv"), "w") as file:
@@ -158,6 +177,7 @@ WALKS = {
     "run-grains": ([], "run grains.yaml", ["grains"]),
     "run-halves": ([], "run halves.yaml", ["halves"]),
     "run-rest": ([], "run rest.yaml", ["rest"]),
+    "run-bars": ([], "run bars.yaml", ["bars"]),
     "run-stages": ([], "run stages.yaml", ["stages"]),
     "restart": (["run plate.yaml --steps 6"], "run plate.yaml --restart", ["plate"]),
     "restart-grains": (["run grains.yaml --steps 20"], "run grains.yaml --restart", ["grains"]),
@@ -191,7 +211,7 @@ TIMES = re.compile(rb"[0-9.]+ ns per directed bond|[0-9.]+ s for [0-9]+ steps|\"
 TOLD = re.compile("out of memory|Cannot allocate memory")
 
 # what crashes by itself when it is refused memory, or tries again without end
-KNOWN_ENDS = ("crash in libhdf5", "crash in libudunits2", "crash in libfontconfig", "no end in libfontconfig")
+KNOWN_ENDS = ("crash in libdmumps", "crash in libmumps", "crash in libgfortran", "crash in libhdf5", "crash in libudunits2", "crash in libfontconfig", "no end in libfontconfig")
 CASES = ("study", "failure")  # verbs of which each case tells it, and whose own last line says in which file there is more
 LOG = re.compile(r"/log\.txt tells more$")
 KEPT = re.compile("^kept: .*$", re.M)

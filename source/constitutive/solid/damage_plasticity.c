@@ -1,10 +1,13 @@
 /* Plastic-damage model of concrete (Lubliner, Oliver, Oller and Onate 1989; Lee and Fenves 1998; docs/theory.md 8.7), tension positive.
  *
  * Effective stress obeys F = (q + alpha I1 + beta <s1> - gamma <-s1>) / (1 - alpha) - Sc <= 0 with beta = Sc / St (1 - alpha) - (1 + alpha);
- * flow along sqrt((e f_t tan(psi))^2 + q^2) + tan(psi) I1 / 3; nominal stress = (1 - D) effective stress, 1 - D = (1 - D_c) (1 - r D_t).
+ * flow along sqrt((e f_t tan(psi))^2 + q^2) + tan(psi) I1 / 3; nominal stress = (1 - D) effective stress, 1 - D = (1 - D_c) (1 - r' D_t).
  * Uniaxial curves over plastic strain x are those of Lee and Fenves: tension f_t exp(-b x), compression
  * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
+ *
+ * The share r' is that of tension in the principal stresses, or the closing offset over the size of the elastic strain if that is more: stress
+ * derives from a free energy, and closed cycles of strain make none (docs/theory.md 8.7, equations 8.1 and 8.2).
  *
  * The flow keeps the direction of the trial deviator. */
 #include "constitutive/solid/damage_plasticity.h"
@@ -22,7 +25,8 @@ enum {
   TENSION_DAMAGE,
   COMPRESSION_DAMAGE,
   LENGTH,
-  INITIAL_ENERGY
+  INITIAL_ENERGY,
+  RECOVERY_BY_SHARE
 };
 
 static const breccia_parameter parameters[] = {
@@ -42,6 +46,9 @@ static const breccia_parameter parameters[] = {
     {"initial fracture energy", "fracture energy", "", "(0, inf)",
      "G_f below the first tangent of stress over opening, which decides largest loads; about 0.4 G_F in concrete; when "
      "absent G_F / 2, one exponential"},
+    {"recovery by share", "1", "0", "[0, 1]",
+     "1: cracks close by the share of tension in the stresses alone, as published; closed cycles of strain then make "
+     "energy"},
 };
 
 /* Share of the strength at which concrete's softening turns into its long tail: 0.15 to 0.33. */
@@ -89,6 +96,9 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->dilation = tan(v[DILATION] * acos(-1) / 180);
   c->rounding = v[ECCENTRICITY] * strength * c->dilation;
   c->update = damage_plasticity_update_chosen();
+  c->by_invariant = 1 / (9 * c->elastic.bulk * young);
+  c->by_deviator = 1 / (3 * c->elastic.shear * young);
+  c->recovers_by_share = v[RECOVERY_BY_SHARE] > 0;
   c->tension = strength;
   c->tension_share = v[TENSION_DAMAGE];
   c->compression_share = v[COMPRESSION_DAMAGE];
@@ -136,7 +146,8 @@ static int history_values(const void *constants)
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  static const char *const names[] = {"plastic strain in tension", "plastic strain in compression", "material damage"};
+  static const char *const names[] = {"plastic strain in tension", "plastic strain in compression", "material damage",
+                                      ""};
   snprintf(name, size, "%s", k >= PLASTIC_IN_TENSION ? names[k - PLASTIC_IN_TENSION] : "");
 }
 
@@ -165,7 +176,10 @@ const breccia_law law_damage_plasticity = {
                  "− t) exp(−k b "
                  "x)), t = 1/4, compression f_c0 ((1 + a) exp(−b x) − a exp(−2 b x)), "
                  "with areas G_F/l and G_c/l\n"
-                 "σ = (1 − D) σ_eff, 1 − D = (1 − D_c)(1 − r D_t), r the share of tension in the principal stresses",
+                 "σ = (1 − D) σ_eff, 1 − D = (1 − D_c)(1 − r' D_t), r' = m/a at least r, the share of tension in the "
+                 "principal stresses; E a²/2 the elastic energy, the closing offset m = max(min(m, a), r a)\n"
+                 "closed cycles make no energy; with 'recovery by share' r' = r as published, and they may make a "
+                 "fourteenth of what is put in",
     .opensees = "nDMaterial ASDConcrete3D (similar)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(DamagePlasticity),

@@ -11,11 +11,20 @@ typedef struct DamagePlasticity {
   double tail, steeper; /* t, and k - 1; 1 and 0: one exponential */
   double compression, hump, compression_rate, compression_share;
   double by_twice_shear, by_rounding, by_tension, by_rest_of_alpha; /* 1 / 2G, 1 / rounding, 1 / f_t, 1 / (1 - alpha) */
-  SolidUpdate *update;                                              /* for the vectors of this machine */
+  double by_invariant, by_deviator; /* of squares of I1 and q in a^2: 1 / (9 K E), 1 / (3 G E) */
+  bool recovers_by_share;           /* as published: no closing offset */
+  SolidUpdate *update;              /* for the vectors of this machine */
 } DamagePlasticity;
 
 /* Plastic strain first. */
-enum { PLASTIC_IN_TENSION = 6, PLASTIC_IN_COMPRESSION, PLASTIC_DAMAGE, DAMAGE_PLASTICITY_HISTORY };
+/* The closing offset is the size of the elastic strain at which closed cracks begin to carry stress [strain]. */
+enum {
+  PLASTIC_IN_TENSION = 6,
+  PLASTIC_IN_COMPRESSION,
+  PLASTIC_DAMAGE,
+  PLASTIC_CLOSING_OFFSET,
+  DAMAGE_PLASTICITY_HISTORY
+};
 
 LANES_CHOICE(SolidUpdate, damage_plasticity_update)
 

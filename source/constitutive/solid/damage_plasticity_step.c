@@ -104,6 +104,24 @@ LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, 
   return dual_product(n, pressed, dual_rest(n, dual_product(n, share, dual_rest(n, pulled))));
 }
 
+/** Finds the share of tension that counts for damage, at least the closing offset over the size of the elastic strain, so that closed cracks carry no more
+ *  than what has been put in since they closed: they have the energy E (a - m)^2 / 2 of what damage takes.
+ *  @param[in] sum, q  of effective stress
+ *  @param[in] share  of tension in the principal stresses
+ *  @param[out] size  a, of the elastic strain: E a^2 / 2 is the energy of C */
+LANES_INLINE Dual counted_share(DualSlopes n, const DamagePlasticity *c, Dual sum, Dual q, Dual share,
+                                const Lanes *committed, Dual *size)
+{
+  const Dual square = dual_sum(n, dual_scale(n, c->by_invariant, dual_product(n, sum, sum)), c->by_deviator,
+                               dual_product(n, q, q)),
+             one = dual_constant(lanes_set(1));
+  *size = dual_root(n, square);
+  const LaneMask beyond = size->value > committed[PLASTIC_CLOSING_OFFSET];
+  const Dual offset = dual_constant(committed[PLASTIC_CLOSING_OFFSET]);
+  const Dual least = dual_choose(n, beyond, dual_quotient(n, offset, dual_choose(n, beyond, *size, one)), one);
+  return dual_larger(n, share, c->recovers_by_share ? dual_constant(lanes_set(0)) : least);
+}
+
 /* What a search finds besides the share. */
 enum { FOUND_SUM, FOUND_TENSION, FOUND_COMPRESSION, FOUND_SHARE, FOUND };
 
@@ -244,8 +262,14 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
   p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
   p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
+  Dual size;
+  const Dual share =
+      counted_share(none, c, dual_constant(s->found[FOUND_SUM]), dual_constant(lanes_product(left, s->q)),
+                    dual_constant(s->found[FOUND_SHARE]), p->committed, &size);
+  p->trial[PLASTIC_CLOSING_OFFSET] =
+      lanes_where(s->found[FOUND_TENSION] > lanes_set(0), lanes_product(share.value, size.value));
   const Dual whole = wholeness(none, c, tail, dual_constant(s->found[FOUND_TENSION]),
-                               dual_constant(s->found[FOUND_COMPRESSION]), dual_constant(s->found[FOUND_SHARE]));
+                               dual_constant(s->found[FOUND_COMPRESSION]), share);
   p->trial[PLASTIC_DAMAGE] = lanes_set(1) - whole.value;
   for (int k = 0; k < 6; ++k) p->stress[k] = lanes_product(whole.value, effective[k]) + (left - left);
 }
@@ -256,7 +280,10 @@ LANES_INLINE void find_tangents(const DamagePlasticity *c, const Search *s, Soli
   const DualSlopes every = {0, LEFT + 1};
   const Trial varied = trial_of(every, s->principal);
   const Flow flow = flow_by(every, c, tail, &varied, s->left, p->committed);
-  const Dual whole = wholeness(every, c, tail, flow.tension, flow.compression, flow.share);
+  Dual size;
+  const Dual share = counted_share(every, c, flow.sum, dual_times_variable(every, varied.q, s->left, LEFT), flow.share,
+                                   p->committed, &size);
+  const Dual whole = wholeness(every, c, tail, flow.tension, flow.compression, share);
   const Spectrum strain = spectrum_with_vectors(&s->apart);
   Lanes value[3], slopes[9], tangent[36];
   const Lanes by_flow =

@@ -1,9 +1,9 @@
 /* Concrete as links that lose their stiffness by stretch (Tuniki 2012, 3.4; docs/theory.md 6.5). Links of micropolar bodies have their damage from the
  * formulation, by `link`. At a point in space the largest principal strain stands for the stretch in tension, and the least one for that in compression:
- *   stress = (1 - D_c) ((1 - D_t) tension + (1 - D_t (1 - s q)) pressure), tension and pressure those of the principal stresses of C strain,
- * s the stiffness that closing cracks gain back and q = <pressure - tension> / (pressure + tension) of their sums. A factor common to both parts, by their
- * share in the stress (Lee and Fenves 1998), would let a crack that is open and sheared carry tension without end: C strain grows with the opening, nothing
- * flows. So would pressure that is given back beside a tension that outweighs it. */
+ *   stress = (1 - D_c) ((1 - D_t) C strain + s D_t (1 - m / a) N),
+ * N the stress of a material without tensile strength, a the size of its strain and s the stiffness that closing cracks gain back. The closing offset m keeps
+ * 1 - m / a at most q = <pressure - tension> / (pressure + tension) of the principal stresses of C strain, so that a sheared open crack carries nothing, and
+ * makes the stress derive from a free energy (docs/theory.md 6.5, equations 6.1 to 6.3). */
 #include "constitutive/link_damage.h"
 #include "constitutive/solid/link_law.h"
 
@@ -44,12 +44,22 @@ static const breccia_parameter parameters[] = {
      "at which the second line of an initial fracture energy begins, over the strength; 1/3 when absent"},
 };
 
+static ClosedModuli closed_moduli_of(const Elasticity *e)
+{
+  const double lambda = e->bulk - 2 * e->shear / 3, wave = lambda + 2 * e->shear, young = elasticity_young(e);
+  return (ClosedModuli){.young = young,
+                        .plane = 4 * e->shear * (lambda + e->shear) / wave,
+                        .across = 2 * e->shear * lambda / wave,
+                        .by_young = 1 / young};
+}
+
 static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
   LinkLaw *c = constants;
   breccia_link *link = &c->link;
   c->update = link_damage_update_chosen();
   if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
+  c->closed = closed_moduli_of(&c->elastic);
   const double begin = v[TENSION], young = elasticity_young(&c->elastic);
   const bool energy = !isnan(v[ENERGY]);
   *link = (breccia_link){.tension_begin = begin,
@@ -122,7 +132,8 @@ static int history_values(const void *constants)
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  snprintf(name, size, "%s", k == LINK_TENSILE ? "tensile damage" : "compressive damage");
+  static const char *const names[LINK_HISTORY] = {"tensile damage", "compressive damage", ""};
+  snprintf(name, size, "%s", names[k]);
 }
 
 static int history_is_damage(const void *constants, int k)
@@ -149,9 +160,11 @@ const breccia_law law_link_damage = {
         "where D_t > 0 beside it; both stay\n"
         "with an initial fracture energy G_f the force falls by two lines, over the opening w = S − (1 − D_t) S_t: to "
         "the kink towards w = 2 G_f/f_t, and on to 0 where G_F is spent\n"
-        "all that links carry, or σ, times (1 − D_t)(1 − D_c); of what is along a link, and of principal stresses, D_t "
-        "counts by 1 − q recovery where it is pressure\n"
-        "q = 1 of a link, ⟨pressure − tension⟩/(pressure + tension) of the sums of principal stresses",
+        "all that links carry times (1 − D_t)(1 − D_c); of pressure along a link D_t counts by 1 − recovery\n"
+        "of a point σ = (1 − D_c)((1 − D_t) C ε + recovery D_t (1 − m/a) σ_N), σ_N of a material without tensile "
+        "strength, E a² = ε:σ_N\n"
+        "closing offset m = max(min(m, a), (1 − q) a), q = ⟨pressure − tension⟩/(pressure + tension) of the principal "
+        "stresses of C ε; closed cycles make no energy",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(LinkLaw),
     .components = 6,

@@ -132,12 +132,32 @@ typedef struct SolidChunk {
   int left;
 } SolidChunk;
 
-/** Rows of history, turned round. @param[in] values  of a row: two, or four and more; a constant */
+/** Rows of history, turned round. @param[in] values  of a row, two or more: a constant */
 LANES_INLINE void load_rows(const double *from, int values, const int32_t *at, Lanes *out)
 {
   if (values == 2) lanes_gather_pairs(from, at, out);
+  for (int k = 0; values == 3 && k < 3; ++k) {
+    double column[LANES];
+    for (int l = 0; l < LANES; ++l) column[l] = from[3 * (ptrdiff_t)at[l] + k];
+    out[k] = lanes_load(column);
+  }
   for (int k = 0; k + QUAD <= values; k += QUAD) lanes_gather_rows(from + k, values, at, out + k);
   if (values > QUAD && values % QUAD) lanes_gather_rows(from + values - QUAD, values, at, out + values - QUAD);
+}
+
+/** Loads rows of three numbers that follow each other, turned round. */
+LANES_INLINE void load_triples(const double *from, Lanes *out)
+{
+  double columns[3][LANES];
+  for (int first = 0; first < LANES; first += QUAD, from += 3 * QUAD) {
+    const Quad a = quad_load(from), b = quad_load(from + QUAD), c = quad_load(from + 2 * QUAD);
+    const Quad leading = __builtin_shufflevector(a, b, 0, 3, 6, 6), middle = __builtin_shufflevector(a, b, 1, 4, 7, 7),
+               last = __builtin_shufflevector(a, b, 2, 5, 5, 5);
+    quad_store(columns[0] + first, __builtin_shufflevector(leading, c, 0, 1, 2, 5));
+    quad_store(columns[1] + first, __builtin_shufflevector(middle, c, 0, 1, 2, 6));
+    quad_store(columns[2] + first, __builtin_shufflevector(last, c, 0, 1, 4, 7));
+  }
+  for (int k = 0; k < 3; ++k) out[k] = lanes_load(columns[k]);
 }
 
 /** The reverse, of four numbers of rows that are all different. */
@@ -214,7 +234,10 @@ LANES_INLINE void sieve_chunk(const void *constants, SolidChunk *chunk, const El
     Lanes strain[6], elastic[6], history[MOST_HISTORY];
     static const int32_t each[SLICE] = {0, 1, 2, 3, 4, 5, 6, 7};
     if (all) {
-      load_rows(from, values, each, history);
+      if (values == 3)
+        load_triples(from, history);
+      else
+        load_rows(from, values, each, history);
       for (int k = 0; k < 6; ++k) strain[k] = lanes_load(batch->strain[k] + first);
     } else { /* beyond the end the last point stands in */
       int32_t at[LANES];

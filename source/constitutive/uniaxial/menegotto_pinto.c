@@ -122,7 +122,9 @@ const breccia_law law_menegotto_pinto = {
     .maturity = "verified against OpenSees Steel02",
     .equations =
         "σ* = b ε* + (1 − b) ε*/(1 + |ε*|ᴿ)^(1/R) between the last reversal and the crossing of the asymptotes\n"
-        "R = R₀ (1 − c₁ ξ/(c₂ + ξ)), ξ the last plastic excursion over f_y/E",
+        "R = R₀ (1 − c₁ ξ/(c₂ + ξ)), ξ the last plastic excursion over f_y/E\n"
+        "the published curves overshoot in small cycles within a large one, which give up to 2 % of what is put into "
+        "them",
     .opensees = "uniaxialMaterial Steel02",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Pinto),

@@ -27,7 +27,7 @@ int record_resample(Record *record, double step, Error *error)
     rows[2 * k + 1] = polyline_value(&line, rows[2 * k]);
   }
   free(record->rows);
-  *record = (Record){rows, (int)count};
+  *record = (Record){.rows = rows, .count = (int)count};
   return BRECCIA_OK;
 }
 

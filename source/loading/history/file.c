@@ -1,4 +1,4 @@
-/* Histories from files: records in the format of the PEER database, tables with a heading, two plain columns. */
+/* Histories from files: records of agencies, tables with a heading, two plain columns, values alone. */
 #include "loading/history/correction.h"
 
 #include "base/memory.h"
@@ -56,6 +56,7 @@ typedef struct FileSpec {
   SectionHead head;
   const char *name, *column, *times, *baseline;
   double scale, step;
+  int64_t channel;
   BandSpec *band;
   bool at_rest;
 } FileSpec;
@@ -70,9 +71,12 @@ static const Field file_fields[] = {
     {.key = "name",
      .kind = FIELD_TEXT,
      .offset = offsetof(FileSpec, name),
-     .meaning = "of the file, relative to the deck's. `.AT2`, `.VT2` and `.DT2` are read as the PEER database writes "
-                "them (first value at time 0, accelerations in g); others have two columns, times and values, parted "
-                "by blanks or commas, or a heading and the 'column' that it names"},
+     .meaning =
+         "of the file, relative to the deck's. Records with a header are recognised: those of PEER (`.AT2`, `.VT2`, "
+         "`.DT2`), the USGS (`.smc`), COSMOS or CSMIP (`.V2`), and K-NET or KiK-net (`.EW`, `.NS`, `.UD`). Their "
+         "first value is at time 0, and accelerations come out in g, velocities in cm/s, displacements in cm, "
+         "whatever the unit of the header. Others have two columns, times and values, parted by blanks or "
+         "commas; values alone, one a line, with the 'time step'; or a heading and the 'column' that it names"},
     {.key = "column",
      .kind = FIELD_TEXT,
      .offset = offsetof(FileSpec, column),
@@ -84,6 +88,12 @@ static const Field file_fields[] = {
      .standard = "time",
      .meaning = "of a CSV file with a heading: the column of times, in the unit that stands behind its name in "
                 "parentheses, else in the deck's"},
+    {.key = "channel",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(FileSpec, channel),
+     .standard = "",
+     .range = "[1, 1000]",
+     .meaning = "of a COSMOS file with several channels of accelerations: which one, in the order of the file"},
     {.key = "scale",
      .kind = FIELD_NUMBER,
      .offset = offsetof(FileSpec, scale),
@@ -98,7 +108,8 @@ static const Field file_fields[] = {
      .range = "(0, inf)",
      .meaning =
          "values at equal steps from the first time of the file on, by straight lines between its own; no longer "
-         "than the file's longest. What follows needs equal steps"},
+         "than the file's longest. What follows needs equal steps. Of a file of values alone: their step, from time 0 "
+         "on"},
     {.key = "baseline correction",
      .kind = FIELD_CHOICE,
      .offset = offsetof(FileSpec, baseline),
@@ -150,7 +161,7 @@ static int correct(Record *record, const FileSpec *spec, const DeckReader *reade
   else if (record->rows[2 * record->count - 2] - record->rows[0] > 1e8 * spec->step)
     status = node_error(reader->document, section_node(spec, "time step"), reader->error,
                         "time step: %g makes more than 1e8 values of the file; choose a longer one", spec->step);
-  else if (!isnan(spec->step))
+  else if (!isnan(spec->step) && !record->stepped)
     status = record_resample(record, spec->step, reader->error);
   if (!status && degree) status = check_steps(record, spec, "baseline correction", reader);
   if (!status && degree && record->count < 2 * degree)
@@ -183,7 +194,12 @@ static int create(History *h, const DeckReader *reader)
   Record record = {0};
   int status = path && words ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status) {
-    const RecordFile file = {.path = path, .column = spec->column, .times = spec->times, .units = reader->units};
+    const RecordFile file = {.path = path,
+                             .column = spec->column,
+                             .times = spec->times,
+                             .step = spec->step,
+                             .channel = spec->channel > 0 ? (int)spec->channel : 0,
+                             .units = reader->units};
     status = record_read(&record, &file, NULL, words);
   }
   if (status)

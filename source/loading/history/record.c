@@ -1,109 +1,97 @@
-#include "loading/history/record.h"
+/* Files of values in time: which format a file has, and those that have none: two plain columns, values alone, and
+ * CSV files with a heading. */
+#include "loading/history/record_formats.h"
 
 #include "base/csv.h"
 #include "base/memory.h"
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-static char *read_text(const char *path, Error *error)
+/* Formats with a header, in the order in which they are tried. */
+static const RecordFormat *const record_formats[] = {&record_knet, &record_cosmos, &record_smc, &record_peer};
+
+static const RecordFormat *record_format(const RecordText *text)
 {
-  char *text = text_read_file(path, NULL);
-  if (!text) error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, text_why_unread(errno));
-  return text;
+  for (size_t k = 0; k < sizeof record_formats / sizeof *record_formats; ++k)
+    if (record_formats[k]->recognises(text)) return record_formats[k];
+  return NULL;
 }
 
-/** The number behind a word and its equals sign. @return NaN if there is none */
-static double number_behind(const char *line, const char *word)
+/** Splits a row into its first two numbers, which blanks, tabs, commas or semicolons part.
+ *  @return how many there are; -1 if anything else stands in the row */
+static int record_row(const char *row, double pair[2])
 {
-  for (const char *c = line; *c && *c != '\n'; ++c) {
-    if (strncasecmp(c, word, strlen(word)) != 0) continue;
-    char *end;
-    const char *from = c + strlen(word) + strspn(c + strlen(word), " =");
-    const double value = strtod(from, &end);
-    if (end > from) return value;
+  static const char *const between = " \t,;";
+  const char *at = row + strspn(row, between);
+  for (int count = 0; count <= 2; ++count) {
+    if (!*at) return count;
+    const char *end;
+    const double value = record_number(at, &end);
+    if (count == 2 || end == at || (*end && !strchr(between, *end))) return -1;
+    pair[count] = value;
+    at = end + strspn(end, between);
   }
-  return NAN;
+  return -1;
 }
 
-/** Number of values and time step in seconds from the last line of the heading. */
-static bool read_heading(const char *line, double *count, double *step)
+/** Refuses a row of a plain file. @param[in] count  numbers of a row before; 0: there is none */
+static int record_refuse_row(const RecordText *text, int line, int count, Error *error)
 {
-  char *end, *next;
-  *count = number_behind(line, "NPTS");
-  *step = number_behind(line, "DT");
-  if (!isnan(*count) && !isnan(*step)) return true;
-  *count = strtod(line, &end);
-  *step = strtod(end, &next);
-  return end > line && next > end;
+  const char *row = text->lines[line] + strspn(text->lines[line], " \t,;");
+  if (count == 1)
+    return error_add(error, BRECCIA_USER_ERROR, "%s:%d: expected one value, as in the rows before, found '%.40s'",
+                     text->path, line + 1, row);
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "%s:%d: expected two numbers, time and value, found '%.40s'; of a file with more columns and "
+                   "a heading choose one with 'column', and of values alone write one a line",
+                   text->path, line + 1, row);
 }
 
-/** A record of the PEER ground motion database: four lines of heading, the last with the number of values and the time step in seconds
- *  (NPTS= 4000, DT= .005 SEC, or 4000 .005 NPTS, DT), then the values. The first is of time 0. */
-static int read_peer(Record *record, const char *path, const Units *units, Error *error)
+/** Reads rows of two numbers, time and value, or of values alone where their step is given. Lines that begin with no
+ *  number before the first row are headings, and lines behind # % ! are remarks. */
+static int read_plain(Record *record, const RecordText *text, const RecordFile *file, Error *error)
 {
-  char *text = read_text(path, error), *at = text;
-  double count = 0, step = 0, unit = 1;
-  if (!text) return BRECCIA_USER_ERROR;
-  for (int line = 0; line < 3 && at; ++line) at = (at = strchr(at, '\n')) ? at + 1 : NULL;
-  Text ignored = {0};
-  units_read(units, dimension_find("time"), "1 s", &unit, &ignored);
-  text_free(&ignored);
-  int status = BRECCIA_OK;
-  if (!at || !read_heading(at, &count, &step) || !(count >= 2) || count > 1e8 || !(step > 0))
-    status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s:4: expected the number of values and the time step, like 'NPTS= 4000, DT= .005 SEC'", path);
-  else if (!(record->rows = memory_zeroed((size_t)count * 2, sizeof(double), "record", error)))
-    status = BRECCIA_FAILURE;
-  at = status ? NULL : strchr(at, '\n');
-  for (char *end; at && record->count < (int)count; at = end) {
-    const double value = strtod(at, &end);
-    if (end == at) break;
-    record->rows[2 * record->count] = record->count * step * unit;
-    record->rows[2 * record->count++ + 1] = value;
+  int numbers = 0; /* in each row */
+  record->rows = memory_zeroed(2 * (size_t)text->count, sizeof(double), "record", error);
+  if (!record->rows) return BRECCIA_FAILURE;
+  for (int k = 0; k < text->count; ++k) {
+    const char *first = text->lines[k] + strspn(text->lines[k], " \t,;"), *end;
+    double pair[2];
+    if (!*first || strchr("#%!", *first)) continue;
+    if (!record->count && (record_number(first, &end), end == first)) continue;
+    const int count = record_row(first, pair);
+    if (count < 1 || (numbers && count != numbers)) return record_refuse_row(text, k, numbers, error);
+    numbers = count;
+    if (count == 1 && !(file->step > 0))
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "%s:%d: holds values without times, found '%.40s'; give the step between them ('time step' in "
+                       "a deck, --time-step of 'breccia spectrum'), or write times before them",
+                       text->path, k + 1, first);
+    record->rows[2 * record->count] = count == 1 ? record->count * file->step : pair[0];
+    record->rows[2 * record->count++ + 1] = count == 1 ? pair[0] : pair[1];
   }
-  if (!status && (record->count < (int)count || at[strspn(at, " \t\r\n")]))
-    status = error_add(error, BRECCIA_USER_ERROR, "%s: its heading says %g values, but it holds %s numbers", path,
-                       count, record->count < (int)count ? "fewer" : "more");
-  free(text);
-  return status;
+  record->stepped = numbers == 1;
+  return BRECCIA_OK;
 }
 
-/** Rows of two numbers, time and value, parted by blanks, tabs, commas or semicolons; lines that begin with no number are headings and remarks. */
-static int read_plain(Record *record, const char *path, Error *error)
+/** Reads a file without `column`, by the first format that recognises it. */
+static int read_text(Record *record, const RecordFile *file, char *label, Error *error)
 {
-  static const char *const between = " \t\r,;";
-  char *text = read_text(path, error);
-  if (!text) return BRECCIA_USER_ERROR;
-  size_t lines = 1;
-  int status = BRECCIA_OK, number = 0;
-  for (const char *c = text; *c; ++c) lines += *c == '\n';
-  record->rows = memory_zeroed(2 * lines, sizeof(double), "record", error);
-  if (!record->rows) status = BRECCIA_FAILURE;
-  for (char *line = text, *next; line && *line && !status; line = next) {
-    next = strchr(line, '\n');
-    if (next) *next++ = 0;
-    ++number;
-    char *end, *last;
-    const char *first = line + strspn(line, between);
-    const double time = strtod(first, &end);
-    if (!*first || (end == first && !record->count) || strchr("#%!", *first)) continue;
-    const char *second = end + strspn(end, between);
-    const double value = strtod(second, &last);
-    if (end == first || last == second || last[strspn(last, between)]) {
-      status = error_add(error, BRECCIA_USER_ERROR,
-                         "%s:%d: expected two numbers, time and value, found '%.40s'; of a file with more columns and "
-                         "a heading choose one with 'column'",
-                         path, number, first);
-    } else {
-      record->rows[2 * record->count] = time;
-      record->rows[2 * record->count++ + 1] = value;
-    }
-  }
-  free(text);
+  RecordText text = {0};
+  char *characters = text_read_file(file->path, NULL);
+  if (!characters) return error_add(error, BRECCIA_USER_ERROR, "%s: %s", file->path, text_why_unread(errno));
+  int status = record_split(&text, file->path, characters, error);
+  const RecordFormat *format = status ? NULL : record_format(&text);
+  if (!status && file->channel && format != &record_cosmos)
+    status = error_add(
+        error, BRECCIA_USER_ERROR,
+        "%s: 'channel' is for files of several channels (COSMOS V2), which this one is not; leave it out", file->path);
+  if (!status)
+    status = format ? format->read(record, &text, file, label, error) : read_plain(record, &text, file, error);
+  free(text.lines);
+  free(characters);
   return status;
 }
 
@@ -136,7 +124,7 @@ static int read_columns(Record *record, const RecordFile *file, char *label, Err
   }
   free(times);
   free(values);
-  *record = (Record){rows, count};
+  *record = (Record){.rows = rows, .count = count};
   return rows && !isnan(unit) ? BRECCIA_OK : BRECCIA_USER_ERROR;
 }
 
@@ -157,23 +145,9 @@ static int check_rows(const Record *record, const char *path, Error *error)
   return BRECCIA_OK;
 }
 
-/** Endings of files of the PEER database, and what their values are. */
-static const char *peer_label(const char *path)
-{
-  static const char *const kinds[][2] = {
-      {".at2", "acceleration (g)"}, {".vt2", "velocity (cm/s)"}, {".dt2", "displacement (cm)"}};
-  const char *ending = strrchr(path, '.');
-  for (size_t k = 0; ending && k < sizeof kinds / sizeof *kinds; ++k)
-    if (!strcasecmp(ending, kinds[k][0])) return kinds[k][1];
-  return NULL;
-}
-
 int record_read(Record *record, const RecordFile *file, char *label, Error *error)
 {
-  const char *peer = file->column ? NULL : peer_label(file->path);
-  if (label) snprintf(label, RECORD_LABEL, "%s", peer ? peer : "");
-  const int status = file->column ? read_columns(record, file, label, error)
-                     : peer       ? read_peer(record, file->path, file->units, error)
-                                  : read_plain(record, file->path, error);
+  if (label) *label = 0;
+  const int status = file->column ? read_columns(record, file, label, error) : read_text(record, file, label, error);
   return status ? status : check_rows(record, file->path, error);
 }

@@ -262,11 +262,12 @@ static void threads_and_restarts_give_the_same_bits(void **state)
               {"implicit: {end time: 1, time step: 1e-3}", true, 45, 60},
               {"static: {increments: 6}", false, 2, 3},
               {"static: {increments: 6, method: relaxation, residual: 1e-4}", true, 2, 3}};
-  const size_t count = under_sanitizers() ? 2 : sizeof ways / sizeof *ways;
+  /* threads that wait for each other make the last one, by relaxation, as long as the others together */
+  const size_t all = sizeof ways / sizeof *ways, count = under_sanitizers() ? 2 : whole_walks() ? all : all - 1;
   for (size_t w = 0; w < count; ++w) {
     solver_of_torn = ways[w].solver;
     bonded_in_torn = ways[w].slips;
-    breccia_model *m = torn_apart(2);
+    breccia_model *m = torn_apart(1);
     const Bars *b = bars_of(m);
     step_surely(m, ways[w].half);
     const int64_t broken = breccia_model_broken_bonds(m);

@@ -46,6 +46,7 @@ static breccia_model *tie_of(const char *law, const char *formulation)
 static void a_tie_cracks_by_its_section_and_yields_by_its_steel(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* bars in a cracked beam, and control that fades (test_fading), are the same code */
   const double steel = acos(-1) / 4 * 16 * 16, concrete = 100 * 100;
   const double cracks_at = 3 * (concrete + 200.0 / 30 * steel), yields_at = 500 * steel;
   breccia_model *m = tie_of("model: mazars, Poisson ratio: 0.2", "correspondence");
@@ -71,6 +72,7 @@ static void a_tie_cracks_by_its_section_and_yields_by_its_steel(void **state)
 static void of_two_weak_columns_one_opens(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* test_fading walks the same code */
   char blocks[5][200];
   static const char *const material[] = {"c", "w", "c", "v", "c"};
   const int count[] = {8, 1, 10, 1, 8}, first[] = {0, 8, 9, 19, 20};
@@ -182,7 +184,7 @@ static void a_beam_in_even_bending_is_left_to_relaxation(void **state)
                   *relaxation = beam_in_even_bending("method: relaxation");
     int left = 0, most = 0;
     double peak = 0;
-    while (!solver_is_done(&newton->solver)) {
+    while (!solver_is_done(&newton->solver) && !(under_sanitizers() && left > 0)) {
       step_surely(newton, 1);
       const char *log = text_words(&newton->solver.log);
       left += strstr(log, "left to other ways: it hardly comes on") != NULL;

@@ -51,7 +51,7 @@ static void a_bar_in_the_middle_presses_the_transformed_section(void **state)
                                       "{prestress: {bars: [tendon], strain: 5e-3}, history: {ramp to: 1}}"};
   static const char *const steels[] = {
       ROD, "rod: {model: steel-bilinear, density: 7, Young modulus: 2e5, yield stress: 5000, hardening ratio: 0.01}"};
-  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
+  for (int n = under_sanitizers() ? 3 : 0; n < 4; ++n) {
     breccia_model *m =
         beam(steels[n / 2], 0.2, "", loads[n % 2], "{static: {increments: 2, end time: 1, residual: 1e-9}}", 1);
     step_surely(m, INT64_MAX);
@@ -73,6 +73,7 @@ static void a_bar_in_the_middle_presses_the_transformed_section(void **state)
 static void a_bar_below_the_axis_lifts_the_middle(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* a bar in the middle is the same code */
   breccia_model *m = beam(ROD, 0.06, "", "{prestress: {bars: [tendon], stress: 1000}}", "{static: {increments: 1}}", 1);
   step_surely(m, INT64_MAX);
   const double steel = 1e-3, more = (2e5 / 3e4) * steel, area = 0.44 * 0.2, below = 0.2 - 0.06;
@@ -149,10 +150,10 @@ static void its_work_is_in_the_books_of_every_solver(void **state)
     snprintf(solve, sizeof solve, "{%s}", solvers[n / 2]);
     breccia_model *m = beam(steel, 0.06, bars[n % 2],
                             "{prestress: {bars: [tendon], strain: 5e-3}, history: {ramp to: 1e-3}}", solve, 1);
-    step_surely(m, INT64_MAX);
+    step_surely(m, under_sanitizers() ? 20 : INT64_MAX);
     const Energy e = solver_energy(&m->solver);
     const BarReport r = bar_report(bars_of(m), 0);
-    assert_true(r.dissipated > 0.05 * e.external); /* it yields */
+    if (!under_sanitizers()) assert_true(r.dissipated > 0.05 * e.external); /* it yields */
     assert_balanced(m, n < 2 ? 1e-3 : 2e-3);
     breccia_model_destroy(&m);
   }
@@ -171,6 +172,7 @@ static void bits_do_not_depend_on_threads_or_restarts(void **state)
   (void)state;
   solver_under_way = "{explicit: {end time: 2e-3}}";
   assert_same_bits_by_threads_and_restart(with_threads, 10, 25);
+  if (under_sanitizers()) return; /* a bar tensioned in a stage walks the static solver */
   solver_under_way = "{static: {increments: 5, end time: 1e-3}}";
   assert_same_bits_by_threads_and_restart(with_threads, 2, 4);
 }

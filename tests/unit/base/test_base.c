@@ -4,6 +4,7 @@
 #include "base/folder_lock.h"
 #include "base/pace.h"
 #include "base/program.h"
+#include "base/regular_file.h"
 #include "base/whole_file.h"
 #include "support.h"
 
@@ -509,6 +510,40 @@ static void a_folder_has_one_holder(void **state)
   free(signature), free(process), free(wanted);
 }
 
+static void only_regular_files_are_opened(void **state)
+{
+  (void)state;
+  remove("regular.link"), remove("regular.pipe"), remove("regular.kept");
+  FILE *kept = regular_file_stream("regular.kept", "w");
+  assert_non_null(kept);
+  assert_true(fputs("precious", kept) >= 0);
+  assert_int_equal(fclose(kept), 0);
+  assert_int_equal(symlink("regular.kept", "regular.link"), 0);
+  assert_int_equal(mkfifo("regular.pipe", 0600), 0);
+  static const struct {
+    const char *path, *words;
+  } cases[] = {{"regular.link", "it is a link; remove it"},
+               {"regular.pipe", "it is a pipe or a device; expected a file"},
+               {"/dev/null", "it is a pipe or a device; expected a file"}};
+  static const char *const modes[] = {"r", "w", "a"};
+  alarm(20); /* a pipe would be waited for */
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    for (size_t m = 0; m < sizeof modes / sizeof *modes; ++m) {
+      assert_null(regular_file_stream(cases[k].path, modes[m]));
+      assert_string_equal(regular_file_problem(errno), cases[k].words);
+    }
+    assert_string_equal(regular_file_problem(regular_file_look(cases[k].path)), cases[k].words);
+    assert_int_not_equal(regular_file_make(cases[k].path), 0);
+  }
+  alarm(0);
+  assert_int_equal(regular_file_look("regular.kept"), 0);
+  assert_int_equal(regular_file_look("regular.none"), 0);
+  char *words = text_read_file("regular.kept", NULL);
+  assert_string_equal(words, "precious");
+  free(words);
+  remove("regular.link"), remove("regular.pipe"), remove("regular.kept");
+}
+
 static void programs_answer_in_one_line(void **state)
 {
   (void)state;
@@ -568,6 +603,7 @@ int main(void)
       cmocka_unit_test(memory_is_zeroed_aligned_and_kept_apart),
       cmocka_unit_test(files_are_written_whole_or_not_at_all),
       cmocka_unit_test(a_folder_has_one_holder),
+      cmocka_unit_test(only_regular_files_are_opened),
       cmocka_unit_test(programs_answer_in_one_line),
       cmocka_unit_test(a_pace_forgets_what_is_long_ago),
   };

@@ -402,9 +402,44 @@ static void wrong_files_and_wishes_are_refused(void **state)
   unlink(plain.path);
 }
 
+static double steady_ground(double t)
+{
+  return t < 0.5 ? 2 : -3;
+}
+
+static void values_alone_take_the_step_that_is_given(void **state)
+{
+  (void)state;
+  char path[] = "/tmp/breccia-XXXXXX";
+  FILE *stream = fdopen(mkstemp(path), "w");
+  assert_non_null(stream);
+  for (int k = 0; k < 100; ++k) fprintf(stream, "%g\n", steady_ground(0.01 * k));
+  fclose(stream);
+  breccia_error *error = breccia_error_create();
+  breccia_motion *motion = NULL;
+  breccia_motion_file file = {.size = sizeof file, .path = path, .unit = "m/s2"};
+  assert_int_equal(breccia_motion_load(&file, &motion, error), BRECCIA_USER_ERROR);
+  holds_words(breccia_error_text(error), "holds values without times|--time-step");
+  breccia_error_destroy(&error);
+  error = breccia_error_create();
+  file.step = -1;
+  assert_int_equal(breccia_motion_load(&file, &motion, error), BRECCIA_USER_ERROR);
+  breccia_error_destroy(&error);
+  error = breccia_error_create();
+  file.step = 0.01;
+  if (breccia_motion_load(&file, &motion, error)) fail_msg("%s", breccia_error_text(error));
+  assert_int_equal(motion->count, 100);
+  assert_near(motion->rows[2 * 99], 0.99, 1e-14);
+  assert_near(motion->rows[2 * 99 + 1], -3, 1e-14);
+  breccia_error_destroy(&error);
+  breccia_motion_destroy(&motion);
+  unlink(path);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(values_alone_take_the_step_that_is_given),
       cmocka_unit_test(a_push_is_overshot),
       cmocka_unit_test(rows_of_a_spectrum_are_those_of_an_oscillator),
       cmocka_unit_test(a_straight_line_is_followed_exactly),

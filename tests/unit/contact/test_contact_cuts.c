@@ -144,8 +144,9 @@ static void particles_look_to_where_they_have_lost_bonds(void **state)
 static void a_closed_cut_is_as_stiff_as_the_body_and_opens_freely(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* the other tests walk the same code */
   const char *const kinds[][2] = {{"bond-based", FIBRE}, {"correspondence", SOLID}};
-  for (int k = 0; k < (under_sanitizers() ? 1 : 2); ++k) {
+  for (int k = 0; k < 2; ++k) {
     double shorter[2];
     for (int cut = 0; cut < 2; ++cut) {
       breccia_model *model = column(kinds[k][0], kinds[k][1], cut ? LEVEL_CUT "contact: {}\n" : "");
@@ -186,7 +187,7 @@ static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
       p->velocity[2][i] = side * -0.5;
     }
     double most = 0;
-    while (breccia_model_time(model) < 2e-3) {
+    while (breccia_model_time(model) < (under_sanitizers() ? 1e-4 : 2e-3)) {
       step_surely(model, 20);
       const Energy e = solver_energy(&model->solver);
       const double given = model->solver.ledger.kinetic_at_start + e.external;
@@ -194,8 +195,8 @@ static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
       assert_true(e.imbalance < 5e-3);
       most = larger_of(most, contact_energy(contact_of(&model->domain)));
     }
-    assert_true(mean_motion(model, 0, 0.04, 1) - mean_motion(model, 0, 0.04, -1) > 0.019);
-    assert_true(most > 1e-4 * model->solver.ledger.kinetic_at_start); /* it was pressed */
+    if (!under_sanitizers()) assert_true(mean_motion(model, 0, 0.04, 1) - mean_motion(model, 0, 0.04, -1) > 0.019);
+    assert_true(most > (under_sanitizers() ? 0 : 1e-4) * model->solver.ledger.kinetic_at_start); /* it was pressed */
     breccia_model_destroy(&model);
   }
 }
@@ -220,7 +221,7 @@ static void faces_of_a_cut_slide_freely_or_with_coulombs_friction(void **state)
         column("bond-based", FIBRE, rough ? LEVEL_CUT "contact: {friction: 0.3}\n" : LEVEL_CUT "contact: {}\n");
     const Particles *p = model->domain.particles;
     double least = INFINITY, first = 0;
-    for (int step = 0; step <= 250; ++step) {
+    for (int step = 0; step <= (under_sanitizers() ? 25 : 250); ++step) {
       double force[3], all[3];
       for (int64_t i = 0; i < p->places; ++i) {
         const bool upper = p->position[2][i] > 0.09;
@@ -273,7 +274,8 @@ static breccia_model *sliding_block(double spacing, double friction, double alon
 static void a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle(void **state)
 {
   (void)state;
-  for (int fine = 0; fine < (under_sanitizers() ? 1 : 2); ++fine) {
+  if (under_sanitizers()) skip(); /* faces of a cut that slide walk the same code */
+  for (int fine = 0; fine < 2; ++fine) {
     const double spacing = fine ? 0.005 : 0.01, mu = 0.4, gravity = 50, speed = 1;
     /* pushed on the level: v^2 / (2 mu g) */
     breccia_model *model = sliding_block(spacing, mu, 0, speed);

@@ -71,6 +71,7 @@ static void the_stable_step_holds_when_faces_press(void **state)
     for (int kind = 0; kind < 2; ++kind)
       for (int wide = 0; wide < 2; ++wide)
         for (int rough = 0; rough < 2; ++rough) {
+          if (under_sanitizers() && (wide != (l + kind) % 2 || rough == wide)) continue;
           breccia_model *m = two_bodies(lattices[l], kind, wide ? 0.03015 : 0.02015, 0.5 * rough,
                                         rough ? "contact: {friction: 0.5}\n" : "contact: {}\n");
           const int axis = l == 2 ? 2 : 1;
@@ -90,7 +91,7 @@ static void the_stable_step_holds_when_faces_press(void **state)
           breccia_model_destroy(&m);
         }
   print_message("the step told is at most %.2f of the stable one of pressed bodies\n", most);
-  assert_true(most > 0.7); /* nor is it much too short */
+  if (!under_sanitizers()) assert_true(most > 0.7); /* nor is it much too short */
 }
 
 /** Bodies fly at each other along the last axis, each with this speed. */
@@ -108,6 +109,7 @@ static void a_run_that_gains_a_fifth_through_contact_is_stopped(void **state)
   (void)state;
   for (int kind = 0; kind < 2; ++kind)
     for (int fault = 0; fault < 2; ++fault) {
+      if (under_sanitizers() && (kind || !fault)) continue;
       breccia_model *m = two_bodies("cubic", kind, 0.03015, 0.3, "contact: {stiffness: 0.1}\n");
       fly(m, 2, 5);
       breccia_error *error = breccia_error_create();
@@ -140,6 +142,7 @@ static void a_run_that_gains_a_fifth_through_contact_is_stopped(void **state)
 static void friction_restarts_to_the_same_bits(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* test_contact_rest walks the same code */
   /* One body lies on the other, which is held, and is pushed along. */
   const char *more =
       "contact: {friction: 0.4}\nfailure: {critical stretch: 2e-3}\nloads:\n"
@@ -200,7 +203,7 @@ static void bodies_in_contact_that_rotate_feel_no_friction(void **state)
     turn(m, 0);
     const double held = contact_energy(contact_of(m)), slid = contact_of(m)->friction_work;
     assert_true(held > 0 && slid < 0.2 * held);
-    for (int n = 0; n < 150; ++n) {
+    for (int n = 0; n < (under_sanitizers() ? 15 : 150); ++n) {
       double force[3] = {0}, torque = 0, size = 0;
       turn(m, 0.01);
       for (int32_t k = 0; k < p->count; ++k) {
@@ -225,6 +228,7 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
   const char *const lattices[] = {"hexagonal", "face-centred cubic"};
   for (int l = 0; l < 2; ++l)
     for (int kind = 0; kind < 2; ++kind) {
+      if (under_sanitizers() && kind != l) continue;
       /* The upper one comes down beside the lower one's edge, over which it hangs by all but two or three rows. */
       breccia_model *m = two_bodies(lattices[l], kind, 0.03015, l ? 3.4 : 9.3, "contact: {friction: 0.3}\n");
       const int axis = l ? 2 : 1;
@@ -237,7 +241,7 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
           size += fabs(p->density[i] * p->volume[i] * p->velocity[c][i]);
         }
       breccia_error *error = breccia_error_create();
-      while (m->solver.clock.step < 1500) {
+      while (m->solver.clock.step < 1500 && !(under_sanitizers() && most > 0)) {
         if (breccia_model_step(m, 10, error)) fail_msg("%s: %s", lattices[l], breccia_error_text(error));
         most = larger_of(most, contact_energy(contact_of(m)));
         assert_true(solver_energy(&m->solver).imbalance < 0.02);
@@ -245,8 +249,11 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
       for (int64_t i = 0; i < p->places; ++i)
         for (int c = 0; c < 3; ++c) after[c] += p->density[i] * p->volume[i] * p->velocity[c][i];
       for (int c = 0; c < 3; ++c) assert_near(after[c], before[c], 1e-11 * size);
-      assert_true(most > 1e-3 * m->solver.ledger.kinetic_at_start); /* they have met */
-      assert_true(contact_energy(contact_of(m)) == 0);              /* and parted */
+      assert_true(most > 0);
+      if (!under_sanitizers()) {
+        assert_true(most > 1e-3 * m->solver.ledger.kinetic_at_start); /* they have met */
+        assert_true(contact_energy(contact_of(m)) == 0);              /* and parted */
+      }
       breccia_error_destroy(&error);
       breccia_model_destroy(&m);
     }

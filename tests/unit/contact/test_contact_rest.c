@@ -290,6 +290,7 @@ static double push_of(const breccia_model *m)
 static void a_block_is_pushed_over_another_with_coulombs_force(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* the same block is pushed by several threads below */
   breccia_model *m = model_of(SLIDING);
   int64_t most = 0;
   double slid = 0;
@@ -314,7 +315,7 @@ static void blocks_meet_whatever_way_they_have_come(void **state)
   (void)state;
   const double gaps[] = {0.031, 0.051}; /* beyond the horizon, so that no bonds join them */
   double carried[2] = {0};
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < (under_sanitizers() ? 1 : 2); ++k) {
     breccia_model *m =
         model_of(UNITS "body:\n"
                        "  base: {material: m, spacing: 0.01" PLANE ", shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}\n"
@@ -338,7 +339,7 @@ static void blocks_meet_whatever_way_they_have_come(void **state)
     breccia_model_destroy(&m);
   }
   assert_true(carried[0] > 100);
-  assert_near(carried[1], carried[0], 1e-6 * carried[0]);
+  if (!under_sanitizers()) assert_near(carried[1], carried[0], 1e-6 * carried[0]);
 }
 
 /* ---- in motion, bits ---- */
@@ -374,6 +375,7 @@ static void flight_of(const breccia_model *m, double v[2])
 static void a_block_bounces_as_in_explicit_steps(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* the last test steps the same block */
   double found[2], expected[2];
   breccia_model *m = model_of(FALLING, "explicit: {end time: 0.05, safety: 0.4}");
   step_surely(m, INT64_MAX);
@@ -447,7 +449,13 @@ static void threads_and_restarts_change_no_bit(void **state)
 {
   (void)state;
   assert_same_bits(sliding, 5, 9);
-  if (!under_sanitizers()) assert_same_bits(falling, 50, 70);
+  if (!under_sanitizers()) {
+    assert_same_bits(falling, 50, 70);
+    return;
+  }
+  breccia_model *m = falling();
+  step_surely(m, 36); /* they have met */
+  breccia_model_destroy(&m);
 }
 
 int main(void)

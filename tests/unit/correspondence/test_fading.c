@@ -31,13 +31,21 @@ static breccia_model *bar_of(const char *law, const char *space, const char *mor
                   law, law, blocks[0], blocks[1], blocks[2], space, more, drawn);
 }
 
-/** By ends that move. */
+/** By ends that move with a speed each, until they are 0.3 mm apart. */
+static breccia_model *torn_bar_at(double speed, const char *law, const char *space, const char *more)
+{
+  char drawn[300];
+  snprintf(drawn, sizeof drawn,
+           "loads: [{on: {face: x-, layers: 3}, velocity: [%g, 0, 0], history: {ramp to: 0.001}},\n"
+           "        {on: {face: x+, layers: 3}, velocity: [%g, 0, 0], history: {ramp to: 0.001}}]\n"
+           "solve: {explicit: {end time: %g}}\n",
+           -speed, speed, 0.15e-3 / speed + 0.0005);
+  return bar_of(law, space, more, drawn);
+}
+
 static breccia_model *torn_bar(const char *law, const char *space, const char *more)
 {
-  return bar_of(law, space, more,
-                "loads: [{on: {face: x-, layers: 3}, velocity: [-0.01, 0, 0], history: {ramp to: 0.001}},\n"
-                "        {on: {face: x+, layers: 3}, velocity: [0.01, 0, 0], history: {ramp to: 0.001}}]\n"
-                "solve: {explicit: {end time: 0.015}}\n");
+  return torn_bar_at(0.02, law, space, more);
 }
 
 static const Correspondence *formulation_of(const breccia_model *m)
@@ -57,8 +65,9 @@ static void bars_pulled_apart_spend_their_fracture_energy(void **state)
   const int count = under_sanitizers() ? 2 : 4;
   for (int k = 0; k < count; ++k) {
     breccia_model *m = torn_bar(bars[k].law, bars[k].space, bars[k].more);
+    const int64_t steps = under_sanitizers() ? 800 : m->solver.clock.steps; /* the control fades from step 500 on */
     double dissipated = 0;
-    while (m->solver.clock.step < m->solver.clock.steps) {
+    while (m->solver.clock.step < steps) {
       step_surely(m, 200);
       const Energy e = solver_energy(&m->solver);
       assert_true(e.internal - e.stored >= dissipated - 1e-6 * e.external); /* what fades is never given back */
@@ -68,7 +77,7 @@ static void bars_pulled_apart_spend_their_fracture_energy(void **state)
     const double area = 0.05 * (strcmp(bars[k].space, "3-D") ? 1 : 0.05),
                  spent = solver_energy(&m->solver).external / area;
     print_message("%s, %s%s: %.3f G_F\n", bars[k].law, bars[k].space, bars[k].more, spent / 0.1);
-    assert_near(spent, 0.1, 0.1 * 0.1);
+    if (!under_sanitizers()) assert_near(spent, 0.1, 0.1 * 0.1);
     breccia_model_destroy(&m);
   }
 }
@@ -80,13 +89,13 @@ static void few_increments_at_rest_spend_no_more(void **state)
   const struct {
     const char *law, *space;
     int increments;
-  } bars[] = {{plasticity, "plane strain", 10},
+  } bars[] = {{mazars, "plane strain", 2},
+              {plasticity, "plane strain", 10},
               {mazars, "plane stress", 10},
-              {mazars, "plane strain", 2},
               {plasticity, "plane strain", 30},
               {flowing, "plane strain", 20}};
   if (under_sanitizers()) skip(); /* bars that are pulled apart walk the same code */
-  const size_t count = whole_walks() ? sizeof bars / sizeof *bars : 3;
+  const size_t count = whole_walks() ? sizeof bars / sizeof *bars : 1;
   for (size_t k = 0; k < count; ++k) {
     char drawn[400];
     snprintf(drawn, sizeof drawn,
@@ -169,6 +178,11 @@ static void control_that_cannot_fade_near_by_fades_to_the_next_state_of_rest(voi
   breccia_model *newton = cantilever("method: newton"), *relaxation = cantilever("method: relaxation");
   while (newton->solver.clock.time < 0.59) step_surely(newton, 1);
   assert_non_null(strstr(text_words(&newton->solver.log), "no equilibrium\n  by secants"));
+  if (under_sanitizers()) {
+    breccia_model_destroy(&newton);
+    breccia_model_destroy(&relaxation);
+    return; /* the next test walks relaxation */
+  }
   while (relaxation->solver.clock.time < 0.59) step_surely(relaxation, 1);
   assert_near(newton->solver.clock.time, relaxation->solver.clock.time, 1e-12);
   print_message("cantilever: %.6g by Newton's method, %.6g by relaxation\n", pushed_with(newton),
@@ -248,7 +262,7 @@ static void at_rest_no_bond_is_left_beyond_its_limit(void **state)
                             "loads: [{on: {face: x-, layers: 3}, displacement: [-0.15e-3, 0], history: {ramp to: 1}},\n"
                             "        {on: {face: x+, layers: 3}, displacement: [0.15e-3, 0], history: {ramp to: 1}}]\n"
                             "solve: {static: {increments: 40}}\n");
-  while (!solver_is_done(&m->solver)) {
+  while (!solver_is_done(&m->solver) && !(under_sanitizers() && m->domain.broken_count > 50)) {
     step_surely(m, 1);
     if (overloaded_bonds(m)) fail_msg("%s", text_words(&m->solver.log));
   }
@@ -296,6 +310,7 @@ static double pushed_footing(const char *fades, double strength, double *before,
 static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* the slope walks the same code */
   double before, kept_before, held, kept_held, elastic, elastic_held;
   const double limit = pushed_footing(", fades: yielding", 1, &before, &held),
                kept = pushed_footing("", 1, &kept_before, &kept_held);
@@ -328,7 +343,7 @@ static void slopes_stand_with_control_as_it_is(void **state)
       "m/s2], history: {ramp to: 1}}]\n"
       "solve: {static: {increments: 10}}\n");
   int again = 0;
-  while (!solver_is_done(&m->solver)) {
+  while (!solver_is_done(&m->solver) && !(under_sanitizers() && again > 0)) {
     step_surely(m, 1);
     const char *const log = text_words(&m->solver.log), *last = NULL;
     for (const char *at = log; (at = strstr(at, "again, with the control")); ++at, ++again) last = at;
@@ -337,7 +352,7 @@ static void slopes_stand_with_control_as_it_is(void **state)
     assert_true(atof(last + strlen("residual ")) < 1e-8);
     text_free(&m->solver.log);
   }
-  assert_true(again > 20);
+  assert_true(again > (under_sanitizers() ? 0 : 20));
   breccia_model_destroy(&m);
 }
 
@@ -347,7 +362,7 @@ static void nothing_fades_before_the_law_softens(void **state)
   /* To 0.8 of the strength the bar is one of an elastic law, to the bit, and its control is the same everywhere. */
   breccia_model *m = torn_bar(mazars, "plane strain", ""), *elastic = torn_bar(mazars, "plane strain", "");
   domain_set_elastic_stage(&elastic->domain, true);
-  while (m->solver.clock.time < 0.0008) {
+  while (m->solver.clock.time < 0.00057) {
     step_surely(m, 10);
     step_surely(elastic, 10);
   }
@@ -360,10 +375,10 @@ static void nothing_fades_before_the_law_softens(void **state)
   breccia_model_destroy(&elastic);
 }
 
-/** Steps a torn bar until its crack is half open: some factors are next to nothing, some whole, some between. */
+/** Steps a slowly torn bar until its crack is half open: some factors are next to nothing, some whole, some between. */
 static breccia_model *half_torn_bar(void)
 {
-  breccia_model *m = torn_bar(mazars, "plane strain", "");
+  breccia_model *m = torn_bar_at(0.01, mazars, "plane strain", "");
   while (m->solver.clock.time < 0.004) step_surely(m, 10);
   const Correspondence *c = formulation_of(m);
   int64_t none = 0, some = 0, whole = 0;
@@ -411,12 +426,12 @@ static void half_torn_bars_restart_to_the_same_bits(void **state)
                 *second = torn_bar(mazars, "plane strain", "");
   char folder[] = "/tmp/breccia-XXXXXX", command[64];
   assert_non_null(mkdtemp(folder));
-  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = 700};
+  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = 500};
   assert_int_equal(breccia_model_run(first, &run, NULL), 0);
   run.restart = 1;
-  run.steps = 1000;
+  run.steps = 650;
   assert_int_equal(breccia_model_run(second, &run, NULL), 0);
-  step_surely(whole, 1000);
+  step_surely(whole, 650);
   assert_int_equal(formulation_of(second)->control, CONTROL_SCALAR);
   const size_t bytes = sizeof(double) * (size_t)whole->domain.particles->places;
   assert_memory_equal(formulation_of(second)->hold[0], formulation_of(whole)->hold[0], bytes);
@@ -432,6 +447,7 @@ static void half_torn_bars_restart_to_the_same_bits(void **state)
 static void what_has_faded_stays_so_as_a_crack_closes(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* nothing but more steps of the bars above */
   breccia_model *m = half_torn_bar();
   const Particles *p = m->domain.particles;
   const Correspondence *c = formulation_of(m);
@@ -466,6 +482,7 @@ static double checkerboard_of(const breccia_model *m)
 static void noise_in_a_half_torn_bar_does_not_grow(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* nothing but more steps of the bars above */
   breccia_model *m = half_torn_bar(), *quiet = half_torn_bar();
   const Particles *p = m->domain.particles;
   const double noise = 1e-8;

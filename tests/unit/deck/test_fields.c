@@ -10,7 +10,7 @@ typedef struct Part {
 
 typedef struct Whole {
   SectionHead head;
-  double number, usual, point[3], open[3];
+  double number, usual, below_one, up_to_one, point[3], open[3];
   const Node *quantity;
   Length length;
   int64_t count, counts[3];
@@ -52,6 +52,18 @@ static const Section part_section = {.name = "part", .size = sizeof(Part), FIELD
 static const Field whole_fields[] = {
     KEY(number, FIELD_NUMBER, .dimension = "stress", .range = "[-5, inf)"),
     {.key = "usual", .kind = FIELD_NUMBER, .offset = offsetof(Whole, usual), .standard = "0.25", .meaning = ""},
+    {.key = "below one",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Whole, below_one),
+     .standard = "",
+     .range = "[0, 1)",
+     .meaning = ""},
+    {.key = "up to one",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Whole, up_to_one),
+     .standard = "",
+     .range = "(0, 1]",
+     .meaning = ""},
     KEY(quantity, FIELD_QUANTITY),
     KEY(length, FIELD_LENGTH, .range = "(0, inf)"),
     KEY(count, FIELD_COUNT, .range = "[1, 9e18]"),
@@ -198,6 +210,21 @@ static void yes_and_no_have_six_words(void **state)
   }
 }
 
+/** The ends that are not accepted are among the values that are refused below. */
+static void closed_ends_of_ranges_are_accepted(void **state)
+{
+  (void)state;
+  static const double below[] = {0, 0.5, 1 - 1e-12}, up_to[] = {1e-12, 0.5, 1};
+  for (size_t k = 0; k < sizeof below / sizeof *below; ++k) {
+    char *deck = text_format("below one: %.17g\nup to one: %.17g\n", below[k], up_to[k]);
+    Reading r = read_deck(deck);
+    assert_string_equal(breccia_error_text(r.error), "");
+    assert_true(r.whole->below_one == below[k] && r.whole->up_to_one == up_to[k]);
+    stop(&r);
+    free(deck);
+  }
+}
+
 static void values_that_are_none_are_refused_in_words(void **state)
 {
   (void)state;
@@ -215,6 +242,10 @@ static void values_that_are_none_are_refused_in_words(void **state)
       {"number: [1]", "1:1: number", "expected a number, found a list", ""},
       {"number: {a: 1}", "1:1: number", "expected a number, found keys and values", ""},
       {"number: -6", "1:9: number", "-6 is out of range; it must be at least -5", ""},
+      {"below one: 1", "1:12: below one", "1 is out of range; it must be at least 0 and less than 1", ""},
+      {"below one: -1e-9", "1:12: below one", "-1e-9 is out of range; it must be at least 0 and less than 1", ""},
+      {"up to one: 0", "1:12: up to one", "0 is out of range; it must be greater than 0 and at most 1", ""},
+      {"up to one: 1.5", "1:12: up to one", "1.5 is out of range; it must be greater than 0 and at most 1", ""},
       {"usual: 2e50", "1:8: usual",
        "2e50 is too large to reckon with; in the deck's units numbers lie between 1e-50 and 1e+50", ""},
       {"usual: -2e-51", "1:8: usual",
@@ -326,6 +357,7 @@ int main(void)
       cmocka_unit_test(every_kind_of_key_is_read),
       cmocka_unit_test(what_is_left_out_is_absent_or_as_the_table_says),
       cmocka_unit_test(yes_and_no_have_six_words),
+      cmocka_unit_test(closed_ends_of_ranges_are_accepted),
       cmocka_unit_test(values_that_are_none_are_refused_in_words),
       cmocka_unit_test(long_values_are_cut_in_messages),
   };

@@ -76,6 +76,24 @@ static const struct {
     {"m", ELASTIC("4.43", "0.9 TPa"), "", "waves would run at 1.5e+04 m/s"},
     /* strength beside stiffness */
     {"m", STRONG("2", "10 GPa", "499 MPa", "900 N/mm"), "", NULL},
+    {"m", STRONG("2", "10 GPa", "21 kPa", "1 N/m"), "", NULL},
+    {"m", STRONG("2", "10 GPa", "19", "1 N/m"), "",
+     "tensile strength: 19 is 19 kPa; materials like it have 20 kPa to 5 GPa; did you mean '19 MPa'? In m, kN, s that "
+     "is "
+     "1.9e+04"},
+    {"m", "model: multi-yield-j2, density: 1.5, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30",
+     "", NULL},
+    {"m",
+     "model: multi-yield-j2, density: 1.5, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 0.03", "",
+     "octahedral strength: 0.03 is 30 Pa; materials like it have 300 Pa to 75 MPa"},
+    /* speeds beside those of waves, here 1.05 km/s: sqrt(E / (0.9 density)) */
+    {"m", USUAL, "loads: [{on: {all: yes}, initial velocity: {translation: [1050, 0]}}]\n", NULL},
+    {"m", USUAL, "loads: [{on: {all: yes}, initial velocity: {translation: [1060, 0]}}]\n",
+     "initial velocity: 1.06 km/s is more than the speed of waves in the body, 1.05 km/s"},
+    {"m", USUAL, "loads: [{on: {face: y-}, velocity: [16500, 0]}]\n",
+     "velocity: 16.5 km/s is more than the speed of waves"},
+    /* the control of zero-energy modes */
+    {"m", USUAL, "", NULL},
     {"m", STRONG("2", "10 GPa", "510 MPa", "900 N/mm"), "",
      "tensile strength: it is 0.051 of Young's modulus, so that the material stretches by 5 % before it breaks"},
     /* fracture energies of anything, and of concrete by its name or its numbers */
@@ -237,6 +255,12 @@ static void bars_that_are_nearly_nothing_are_told(void **state)
        "diameter: bar 'fine' has a section of 0.00011 mm2"},
       {"{points: [[0.02, 0.025], [0.05, 0.025]], area: 0.03 mm2, number: 9, material: s}", NULL}, /* fibres */
       {"{points: [[0.0245, 0.025], [0.035, 0.025]], area: 2.1e-7, number: 9, material: s}", NULL},
+      {"{points: [[0.05, 0.025], [0.02, 0.025]], area: 1e-4, material: s}",
+       "points: bar 'fine' lies where bar 'low' lies already, and both count"},
+      {"{points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: s, number: 2}",
+       "points: bar 'fine' lies where bar 'low' lies already"},
+      {"{points: [[0.02, 0.025], [0.05, 0.025]], area: 1.1e-4, material: s}", NULL}, /* another bar of a bundle */
+      {"{points: [[0.02, 0.015], [0.05, 0.015]], area: 1e-4, material: s}", NULL},
       {"{points: [[0.0245, 0.025], [0.0344, 0.025]], area: 1e-4, material: s}",
        "points: bar 'fine' is 0.0099 m long, 0.99 of the spacing, so that it pulls on few particles"},
   };
@@ -315,6 +339,25 @@ static void points_beside_the_body_are_told(void **state)
       {"loads: [{on: {any of: [{nearest: [0.005, 0.005]}, {nearest: [5, 5]}]}, force: [0, 1e-6]}]\n",
        "nearest: [5, 5] is"},
       {"profiles: {p: {of: {nearest: [-5, 0.005]}, along: x}}\n", "nearest: [-5, 0.005] is"},
+      /* coordinates that count for nothing */
+      {WATCHES("displacement of: {nearest: [0.025, 0.025, 0.004]}"),
+       "nearest: its third coordinate, 0.004, counts for nothing: the body is plane, at z = 0"},
+      {WATCHES("displacement of: {nearest: [0.025, 0.025, 0]}"), NULL},
+      {WATCHES("displacement of: {any of: [{nearest: [0.025, 0.025, 1 mm]}]}"), "nearest: its third coordinate, 1 mm"},
+      {WATCHES("opening between: [[0.005, 0.005], [0.015, 0.005, 0.003]]"), "opening between: its third coordinate"},
+      {"cracks: [{cut: {line: [[0.04, 0, 0.002], [0.04, 0.03]]}}]\n", "line: its third coordinate, 0.002"},
+      {WATCHES("displacement of: {inside: {sphere: {centre: [0.025, 0.025, 0.001], radius: 0.02}}}"),
+       "centre: its third coordinate, 0.001"},
+      {WATCHES("displacement of: {inside: {box: {from: [0, 0, -1], to: [0.05, 0.05, 1]}}}"), NULL},
+      /* loads that stand in the deck twice */
+      {"loads: [{on: {face: x+}, force: [1e-6, 0]}, {on: {face: y+}, force: [1e-6, 0]}]\n", NULL},
+      {"loads: [{on: {face: x+}, force: [1e-6, 0]}, {on: {face: x+}, force: [0, 1e-6]}]\n", NULL},
+      {"loads: [{on: {face: x+}, force: [1e-6, 0]}, {on: {face: x+}, force: [1e-6, 0], history: {ramp to: 1 us}}]\n",
+       NULL},
+      {"selections: {right: {face: x+}}\nloads: [{on: {face: x+}, force: [1e-6, 0]}, {on: {face: x+}, force: [0, "
+       "1e-6]}, "
+       "{name: again, on: right, force: [1e-6, 0]}]\n",
+       "deck:8:106: force: the load in line 8 says the same of the same particles, and both act"},
   };
   for (size_t k = 0; k < sizeof points / sizeof *points; ++k) {
     char more[500];
@@ -613,6 +656,61 @@ static void points_between_particles_are_told(void **state)
   }
 }
 
+/** Points that a selection is made of are looked at each. */
+static void points_of_selections_between_particles_are_told(void **state)
+{
+  (void)state;
+  breccia_model *m = body_of("m", USUAL,
+                             "selections: {jack: {any of: [{nearest: [0.02, 0.025]}, {nearest: [0.035, 0.025]}, "
+                             "{any of: [{nearest: [0.06, 0.02]}]}]}}\n"
+                             "loads: [{on: jack, force: [0, 1e-6]}]\n");
+  const char *words = breccia_model_plausibility(m), *first = strstr(words, "2 particles are equally near"),
+             *last = strstr(words, "4 particles are equally near");
+  if (!first || !last || strstr(first + 1, "2 particles")) fail_msg("%s", words);
+  breccia_model_destroy(&m);
+}
+
+static void control_beyond_measure_is_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *control, *words;
+  } cases[] = {{"silling: 0.2", NULL},
+               {"silling: 10", NULL},
+               {"silling: 11", "silling: a factor of 11 on the control of zero-energy modes"},
+               {"wan: 1e30", "wan: a factor of 1e+30 on the control of zero-energy modes"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        "materials: {m: {model: elastic, density: 2000, Young modulus: 3 GPa, Poisson ratio: 0.2}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {space: plane strain, zero-energy control: {%s}}\nsolve: {explicit: {steps: 1}}\n",
+        cases[k].control);
+    const char *words = breccia_model_warnings(m);
+    if (cases[k].words ? !strstr(words, cases[k].words) : *words != 0) fail_msg("%s: %s", cases[k].control, words);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void weak_bonds_are_told(void **state)
+{
+  (void)state;
+  for (int weak = 0; weak < 2; ++weak) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: elastic, density: 2, Young modulus: 30 GPa, Poisson ratio: 0.2}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {formulation: hybrid, space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+        "failure: {criterion: critical bond stress, bond tensile strength: %s, bond shear strength: 5 MPa}\n",
+        weak ? "3" : "3 MPa");
+    const char *words = breccia_model_warnings(m);
+    if (weak !=
+        (strstr(words, "bond tensile strength: 3 is 3 kPa; materials like it have 60 kPa to 15 GPa; did you mean "
+                       "'3 MPa'?") != NULL))
+      fail_msg("%d: %s", weak, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Control that keeps its stiffness where soil yields is told of bodies at rest, where limit loads are looked for. */
 static void control_that_outlasts_yielding_is_told(void **state)
 {
@@ -709,6 +807,9 @@ int main(void)
                                      cmocka_unit_test(beams_of_the_wrong_modulus_are_told),
                                      cmocka_unit_test(ground_beyond_its_strength_is_told),
                                      cmocka_unit_test(points_between_particles_are_told),
+                                     cmocka_unit_test(points_of_selections_between_particles_are_told),
+                                     cmocka_unit_test(control_beyond_measure_is_told),
+                                     cmocka_unit_test(weak_bonds_are_told),
                                      cmocka_unit_test(control_that_outlasts_yielding_is_told),
                                      cmocka_unit_test(damping_that_lets_a_body_creep_is_told),
                                      cmocka_unit_test(of_equal_blocks_the_first_tells_how_waves_run)};

@@ -109,6 +109,7 @@ static void bonds_of_any_influence_break_at_the_same_energy(void **state)
                                            "gaussian", "quartic", "cubic-spline"};
   for (size_t w = 0; w < sizeof influences / sizeof *influences; ++w)
     for (int n = 0; n < BODIES; ++n) {
+      if ((w + (size_t)n) % (under_sanitizers() ? 5 : 2) && !whole_walks()) continue; /* pairs in turn */
       double limit = 1e9;
       for (int pass = 0; pass < 2; ++pass) { /* what bonds hold, then a limit in their midst */
         char more[200];
@@ -279,6 +280,7 @@ static void a_body_torn_in_two_spends_the_critical_energy_of_each_bond(void **st
       {"correspondence", "model: elastic, Poisson ratio: 0.25", true, 1, 0.02},
   };
   for (size_t k = 0; k < sizeof torn / sizeof *torn; k += under_sanitizers() ? 3 : 1) {
+    if ((k + k / 2) % 2 && !whole_walks()) continue; /* each formulation in space or in the plane */
     const double share = booked_over_wanted(torn[k].formulation, torn[k].law, torn[k].plane);
     print_message("%s, %s, %s: booked %.4f of w_c of all bonds\n", torn[k].formulation, torn[k].law,
                   torn[k].plane ? "plane" : "space", share);
@@ -356,6 +358,7 @@ static double strip_bears(const char *formulation, const char *law, const char *
     for (int64_t n = 0; n < held->count; ++n)
       pull += m->domain.particles->internal[0][held->places[n]] * m->domain.particles->volume[held->places[n]];
     most = larger_of(most, pull);
+    if (m->domain.broken_count > 100 && pull < 0.5 * most) break; /* the largest load is behind */
   }
   assert_true(m->domain.broken_count > 100);
   breccia_model_destroy(&m);
@@ -513,7 +516,9 @@ static void the_sweep_misses_no_bond(void **state)
 {
   (void)state;
   for (int n = 0; n < BODIES; ++n)
-    for (int plane = under_sanitizers(); plane < 2; ++plane) {
+    for (int plane = 0; plane < 2; ++plane) {
+      if ((n + plane) % 2 == 0 && !whole_walks()) continue; /* each body in the plane or in space, in turn */
+      if (under_sanitizers() && !plane) continue;
       breccia_model *m = torn_blocks(n, plane ? "plane strain" : "3-D"),
                     *plain = torn_blocks(n, plane ? "plane strain" : "3-D");
       Criterion all = *plain->domain.failure.criterion;
@@ -548,6 +553,7 @@ static void threads_and_restarts_do_not_change_a_bit(void **state)
 {
   (void)state;
   for (int n = 0; n < BODIES; n += under_sanitizers() ? 2 : 1) {
+    if (n == 1 && !whole_walks()) continue; /* the next body has the same formulation */
     breccia_model *whole = torn_blocks(n, "3-D"), *first = torn_blocks(n, "3-D"), *second = torn_blocks(n, "3-D");
     char folder[] = "/tmp/breccia-XXXXXX", command[64];
     assert_non_null(mkdtemp(folder));

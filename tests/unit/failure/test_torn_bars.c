@@ -18,6 +18,7 @@ static void bars_spend_their_fracture_energy(void **state)
   };
   const int count = under_sanitizers() ? 2 : sizeof bars / sizeof *bars;
   for (int k = 0; k < count; ++k) {
+    if (k % 3 == 1 && !whole_walks()) continue; /* laws and formulations of these are among the others */
     TornBarEnd end;
     breccia_error *error = breccia_error_create();
     const int status = torn_bar_pull(&bars[k], &end, NULL, error);
@@ -51,7 +52,7 @@ static void bonds_near_faces_are_missing_in_a_flat_crack(void **state)
 {
   (void)state;
   const int rows[] = {6, 12};
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < (whole_walks() ? 2 : 1); ++k) {
     const TornBar bar = {"formulation: bond-based",
                          "model: bilinear-softening",
                          "plane stress",
@@ -101,6 +102,8 @@ static void links_of_a_point_carry_nothing_while_open_and_all_when_closed(void *
     for (int k = 0; k < 6; ++k) assert_near(stress[k], 0, 1e-6);
     point_commit(&p);
   }
+  point_try(&p, open[0], stress, NULL, 0); /* the crack closes from where it is open and nothing presses */
+  point_commit(&p);
   point_try(&p, closed, stress, NULL, 0);
   assert_near(stress[YY], -30e3, 1e-6 * 30e3);
   point_try(&p, split, stress, NULL, 0); /* pressure beside a crack that stays open: a part of it, and no tension */

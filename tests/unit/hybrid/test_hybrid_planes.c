@@ -181,7 +181,7 @@ static void rows_of_any_length_exert_what_walked_bonds_do(void **state)
 {
   (void)state;
   static const int size[][3] = {{70, 23, 12}, {16, 16, 16}};
-  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
+  for (int n = 0; n < 4; n += whole_walks() ? 1 : 3) { /* each size by one of the horizons */
     const int *cells = size[n / 2];
     breccia_model *model[3]; /* eight lanes, four, walked */
     for (int k = 0; k < 3; ++k) {

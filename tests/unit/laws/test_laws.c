@@ -5,21 +5,16 @@
 #include "base/tensor.h"
 #include "results/fields.h"
 
-#ifdef __SANITIZE_ADDRESS__
-enum { WALK = 30000 };
-#else
-enum { WALK = 1000000 };
-#endif
-
-static void a_million_steps_of_any_size_stay_finite_and_inside(void **state)
+static void steps_of_any_size_stay_finite_and_inside(void **state)
 {
   (void)state;
+  const int steps = under_sanitizers() ? 10000 : whole_walks() ? 1000000 : 200000;
   for (int n = 0; n < SAMPLES; ++n) {
     Material m = samples[n].make();
     Point p = point_start(&m);
     uint64_t seed = 23;
     double strain[6] = {0};
-    for (int step = 0; step < WALK; ++step) {
+    for (int step = 0; step < steps; ++step) {
       double s[6];
       /* Steps from 1e-12 to 1 in turn with such as a laboratory makes, and a fresh point now and then. */
       const double size = step / 1000 % 2 ? 3 * samples[n].strain : 1;
@@ -540,7 +535,7 @@ static void plane_stress_holds_where_cracks_stand_open(void **state)
 {
   (void)state;
   static const struct {
-    double strain[6], committed[9];
+    double strain[6], committed[10];
   } cases[] = {
       {{-0.000243212, 0.108388517, 0.244462189, 0.108423694},
        {-0.000217573, 0.108569, 0.244460699, 0.0543345459, 0, 0, 0.0186700, 0.0494696, 0.999142441993}},
@@ -715,7 +710,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_law_in_space_is_among_the_samples),
       cmocka_unit_test(every_law_says_what_it_is),
-      cmocka_unit_test(a_million_steps_of_any_size_stay_finite_and_inside),
+      cmocka_unit_test(steps_of_any_size_stay_finite_and_inside),
       cmocka_unit_test(stress_turns_with_the_strain),
       cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),
       cmocka_unit_test(stress_and_history_do_not_hang_on_the_tangent),

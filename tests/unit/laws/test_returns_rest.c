@@ -8,6 +8,7 @@ typedef struct Stretches {
   bool linear_force;
   double first, kink; /* share of the energy below the first of two lines, and where the second begins; 0: one line */
   Visits visits;
+  int held_back; /* steps in which closed cracks carry less than the strain alone would let them */
 } Stretches;
 
 /** What is left of the largest force by two lines over the opening, which is the strain less what is elastic. */
@@ -23,6 +24,31 @@ static double left_by_two_lines(const Stretches *c, double most)
     *(force < carried ? &low : &high) = force;
   }
   return low;
+}
+
+/** Principal stresses of a material without tensile strength: of the eight choices of open directions the one whose stresses are nowhere positive and whose
+ *  openings are nowhere negative. */
+static void find_closed(const Material *m, const double strain[3], double stress[3])
+{
+  const double lambda = m->bulk - 2 * m->shear / 3,
+               noise = 1e-13 * (fabs(strain[0]) + fabs(strain[1]) + fabs(strain[2]));
+  for (int open = 0; open < 8; ++open) {
+    int count = 0;
+    double sum = 0; /* of elastic strains: those of open directions are alike, -lambda / (2 shear) of the sum each */
+    for (int k = 0; k < 3; ++k) {
+      count += open >> k & 1;
+      if (!(open >> k & 1)) sum += strain[k];
+    }
+    const double volume = sum / (1 + count * lambda / (2 * m->shear));
+    bool right = true;
+    for (int k = 0; k < 3; ++k) {
+      const bool opens = open >> k & 1;
+      stress[k] = opens ? 0 : lambda * volume + 2 * m->shear * strain[k];
+      right &= opens ? strain[k] + lambda / (2 * m->shear) * volume >= -noise : stress[k] <= m->bulk * noise;
+    }
+    if (right) return;
+  }
+  fail_msg("no choice of open directions");
 }
 
 static void stretches_obey(const Step *s, void *data)
@@ -51,10 +77,19 @@ static void stretches_obey(const Step *s, void *data)
                closed = pull + push > 0 ? past(push - pull) / (push + pull) : 0;
   SMALL(s, "tensile damage", s->after[0] - in_tension, 1);
   SMALL(s, "compressive damage", s->after[1] - in_compression, 1);
-  double expected[6] = {0};
+  double expected[6] = {0}, without_tension[3], work = 0;
+  find_closed(s->m, strain, without_tension);
+  for (int k = 0; k < 3; ++k) work += without_tension[k] * strain[k];
+  const double young = 9 * s->m->bulk * s->m->shear / (3 * s->m->bulk + s->m->shear),
+               size = sqrt(fmax(0, work) / young), before = s->before[2],
+               offset = fmax(fmin(before, size), (1 - closed) * size),
+               recovered = size > 0 ? c->recovery * in_tension * (size - offset) / size : 0;
+  SMALL(s, "closing offset", s->after[2] - (in_tension > 0 ? offset : 0), c->tension);
+  c->held_back += in_tension > 0 && offset > (1 - closed) * size + 1e-3 * c->tension;
+  tensor_eigen(tensor, strain, axes);
   for (int k = 0; k < 3; ++k) {
-    const double lost = in_tension * (stress[k] < 0 ? 1 - c->recovery * closed : 1),
-                 carried = (1 - in_compression) * (1 - lost) * stress[k];
+    const double whole_stress = 2 * s->m->shear * strain[k] + (s->m->bulk - 2 * s->m->shear / 3) * trace_of(tensor),
+                 carried = (1 - in_compression) * ((1 - in_tension) * whole_stress + recovered * without_tension[k]);
     for (int n = 0; n < 6; ++n)
       expected[n] += carried * axes[3 * symmetric_row[n] + k] * axes[3 * symmetric_column[n] + k];
   }
@@ -77,15 +112,16 @@ static void damage_by_stretch_follows_its_lines(void **state)
       material_of("link-damage", MODULI, "fracture energy=0.1", "initial fracture energy=0.04", "kink stress=0.25",
                   "length=0.2", "stiffness recovery=0", NULL)};
   /* 2 G_F / (E S_t l): a triangle of stress over strain. */
-  const Stretches cases[] = {{1e-4, 2e-4, 4e-4, 8e-4, 1, false, 0, 0, {{0}}},
-                             {1e-4, 7e-4, 2e-4, 1e-3, 0.4, false, 0, 0, {{0}}},
-                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.04), INFINITY, INFINITY, 0, true, 0, 0, {{0}}},
-                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.2), INFINITY, INFINITY, 0, true, 0.4, 0.25, {{0}}}};
+  const Stretches cases[] = {{1e-4, 2e-4, 4e-4, 8e-4, 1, false, 0, 0, {{0}}, 0},
+                             {1e-4, 7e-4, 2e-4, 1e-3, 0.4, false, 0, 0, {{0}}, 0},
+                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.04), INFINITY, INFINITY, 0, true, 0, 0, {{0}}, 0},
+                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.2), INFINITY, INFINITY, 0, true, 0.4, 0.25, {{0}}, 0}};
   static const double sizes[] = {6e-5, 3e-4, 1.5e-3};
   for (int k = 0; k < 4; ++k) {
     Stretches c = cases[k];
     for (int n = 0; n < 3; ++n) walk(&m[k], sizes[n], false, stretches_obey, &c);
     all_visited("link-damage", &c.visits, k < 2 ? 7 : 5);
+    assert_true(k >= 2 || c.held_back > 100);
     material_destroy(&m[k]);
   }
 }

@@ -121,6 +121,128 @@ static void write_text(const char *folder, const char *name, const char *text)
   fclose(file);
 }
 
+/** Adds a number in a column of a width, as Fortran writes it. */
+static void add_column(char *text, size_t size, int width, const char *number)
+{
+  const size_t length = strlen(text);
+  snprintf(text + length, size - length, "%*s", width, number);
+}
+
+/** Adds lines of equal columns, all with one number but for those that are given by their index. */
+static void add_columns(char *text, size_t size, int count, int per_line, int width, const char *other,
+                        const char *const given[][2])
+{
+  for (int k = 0; k < count; ++k) {
+    const char *number = other;
+    for (int n = 0; given[n][0]; ++n)
+      if (atoi(given[n][0]) == k) number = given[n][1];
+    add_column(text, size, width, number);
+    if (k % per_line == per_line - 1 || k == count - 1) strncat(text, "\n", size - strlen(text) - 1);
+  }
+}
+
+/** Writes a file in the SMC format: text, 48 integers, 50 reals, comments, values in columns of ten that touch each
+ *  other. */
+static void write_smc(const char *folder, const char *name, const char *kind, const char *rate, const char *values)
+{
+  char text[4096];
+  snprintf(text, sizeof text, "%s\n", kind);
+  for (int k = 0; k < 9; ++k) strcat(text, "*\n");
+  strcat(text, "*\n");
+  add_columns(text, sizeof text, 48, 8, 10, "-32768", (const char *const[][2]){{"15", "2"}, {"16", "5"}, {NULL, NULL}});
+  add_columns(text, sizeof text, 50, 5, 15, "0.1700000E+39", (const char *const[][2]){{"1", rate}, {NULL, NULL}});
+  strcat(text, "| a remark\n| 1.0 another one\n");
+  strcat(text, values);
+  write_text(folder, name, text);
+}
+
+/** Writes a file in the V2 format of COSMOS with so many channels, each with 12 lines of text, integers, 62 reals and
+ *  a block of accelerations. */
+static void write_cosmos(const char *folder, const char *name, int channels, const char *step, const char *block)
+{
+  char text[8192] = "";
+  for (int channel = 0; channel < channels; ++channel) {
+    strcat(text, "Corrected acceleration  (Format v01.20 with 13 text lines)\n");
+    for (int k = 0; k < 12; ++k) strcat(text, "text, 7200 of a station\n");
+    strcat(text, "  10  Integer-header values follow on  1 lines, Format= (10I8)\n");
+    add_columns(text, sizeof text, 10, 10, 8, "-999", (const char *const[][2]){{NULL, NULL}});
+    strcat(text, " 100  Real-header values follow on 17 lines, Format= (6F13.6)\n");
+    add_columns(text, sizeof text, 100, 6, 13, "-999.000000", (const char *const[][2]){{"61", step}, {NULL, NULL}});
+    strcat(text, "   1 Comment line(s) follow, each starting with a \"|\":\n| a remark\n");
+    strcat(text, block);
+    strcat(text, "End-of-data for channel\n");
+  }
+  write_text(folder, name, text);
+}
+
+static void write_record_files(const char *folder)
+{
+  write_text(folder, "fortran.AT2",
+             "a\nb\nACC IN UNITS OF G\nNPTS=   5, DT=   2.00D-03 SEC,\n 1.0D-01-2.D-1 3.0Q-001 0 .5-001\n");
+  write_text(folder, "milli.AT2", "a\nb\nACC IN UNITS OF G\nNPTS= 5, DT (MSEC) = 2\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "cm.AT2",
+             "a\nb\nACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC\nNPTS= 5, DT= 2 MSEC\n"
+             "98.0665 -196.133 294.1995 0 49.03325\n");
+  write_text(folder, "stars.AT2",
+             "a\nb\nACC IN UNITS OF CM/SEC**2\nNPTS= 5, DT= .002 SEC\n98.0665 -196.133 294.1995 0 49.03325\n");
+  write_text(folder, "metres.AT2",
+             "units: m/s^2\nDT = .002\na remark in 3 words\nNPTS = 5\n.980665 -1.96133 2.941995 0 .4903325\n");
+  write_text(folder, "six.AT2",
+             "turned\nH1: 000\nH2: 090\nangle 37\nFN\nAcceleration in g\n5 0.0020 NPTS, DT\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "early.AT2",
+             "NPTS= 5, DT= .002 SEC\nstation\n(the unit) Acceleration (gal)\n98.0665 -196.133 294.1995 0 49.03325\n");
+  write_text(folder, "record.txt", "NPTS= 5, DT= .002 SEC, UNITS: G\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "fast.VT2", "a\nb\nVELOCITY IN UNITS OF M/S\nNPTS= 5, DT= .002 SEC\n.001 -.002 .003 0 .0005\n");
+  write_text(folder, "values.txt", "motion of a table\n.1\n-2.D-1\n.3\n0\n.05\n");
+  write_smc(folder, "two.smc", "2 CORRECTED ACCELEROGRAM", "0.5000000E+03",
+            "  98.06650-196.13300 294.19950   0.00000  49.03325\n");
+  write_cosmos(folder, "one.v2", 1, "2.000000",
+               "5 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(8f10.5)\n"
+               "  98.06650-196.13300 294.19950   0.00000  49.03325\n5 velocity pts, approx 0 secs, units=cm/sec "
+               "(05),Format=(8f10.5)\n"
+               "   1.00000   1.00000   1.00000   1.00000   1.00000\n");
+  write_cosmos(folder, "three.v2", 3, "2.000000",
+               "5 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(8f10.5)\n"
+               "  98.06650-196.13300 294.19950   0.00000  49.03325\n");
+  write_cosmos(folder, "counts.v0", 1, "2.000000",
+               "5 acceleration pts, approx 0 secs, units=counts (50),Format=(8f10.5)\n"
+               "  98.06650-196.13300 294.19950   0.00000  49.03325\n");
+  write_cosmos(folder, "stopped.v2", 1, "-999.000000",
+               "5 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(8f10.5)\n"
+               "  98.06650-196.13300 294.19950   0.00000  49.03325\n");
+  write_cosmos(folder, "lasting.v2", 1, "2.000000",
+               "5 acceleration pts, approx 9 secs, units=cm/sec2(04),Format=(8f10.5)\n"
+               "  98.06650-196.13300 294.19950   0.00000  49.03325\n");
+  write_text(folder, "csmip.v2",
+             "a station\n   5 points of accel data equally spaced at  .002 sec, in cm/sec2. (3f9.5)\n"
+             " 98.06650-196.1330294.19950\n  0.00000 49.03325\n   5 points of veloc data equally spaced at  .002 sec, "
+             "in cm/sec. (3f9.5)\n"
+             "  1.00000  1.00000  1.00000\n  1.00000  1.00000\n/&  ---------- End of data for channel  1 ----------\n");
+  write_text(folder, "unit.AT2",
+             "a\nb\nACCELERATION IN UNITS OF FURLONGS/FORTNIGHT2\nNPTS= 5, DT= .002 SEC\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "speed.AT2", "a\nb\nVELOCITY IN UNITS OF CM/S\nNPTS= 5, DT= .002 SEC\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "none.txt", "a\nNPTS= 5, DT= .002 SEC\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "word.AT2", "a\nb\nc\nNPTS= 5, DT= .002 SEC\n.1 -.2\nx .3 0 .05\n");
+  write_text(folder, "long.AT2", "a\nb\nc\nNPTS= 5, DT= .002 SEC\n.1 -.2 .3 0 .05\n.1\n");
+  write_text(folder, "tail.AT2", "a\nb\nc\nNPTS= 5, DT= .002 SEC\n.1 -.2 .3 0 .05\nend\n");
+  write_text(folder, "zero.AT2", "a\nb\nc\nNPTS= 5, DT= .000 SEC\n.1 -.2 .3 0 .05\n");
+  write_text(folder, "mixed.txt", "1\n2 3\n");
+  write_smc(folder, "uneven.smc", "1 UNCORRECTED ACCELEROGRAM", "0.1700000E+39", "1 2 3 4 5\n");
+  write_smc(folder, "spectrum.smc", "5 RESPONSE SPECTRA", "0.5000000E+03", "1 2 3 4 5\n");
+  write_text(folder, "shallow.smc", "2 CORRECTED ACCELEROGRAM\n*\n1 2 3\n");
+  write_text(folder, "knet.EW",
+             "Origin Time       2006\nSampling Freq(Hz) 500Hz\nScale Factor      980.665/1000\nMemo.\n 1 2\n");
+  write_text(folder, "knet.UD",
+             "Origin Time       2006\nSampling Freq(Hz) 500Hz\nDuration Time(s)  9\nScale Factor      "
+             "980.665(gal)/1000\nMemo.\n 1 2\n");
+  /* Counts 8000 + 1000 (0.05, -0.25, 0.25, -0.05, 0), which is 0.1, -0.2, 0.3, 0, 0.05 less the mean; 1000 counts are
+   * 1 g. */
+  write_text(
+      folder, "knet.NS",
+      "Origin Time       2006/01/18 23:25:00\nSampling Freq(Hz) 500Hz\nDuration Time(s)  0\n"
+      "Scale Factor      980.665(gal)/1000\nMemo.             \n    8050     7750     8250\n    7950     8000\n");
+}
+
 static char *folder_of_files(void)
 {
   static char folder[32];
@@ -136,6 +258,7 @@ static char *folder_of_files(void)
   write_text(folder, "bare.AT2", "a\nb\nc\nno numbers here\n.1 -.2 .3 0 .05\n");
   write_text(folder, "two.txt", "time acceleration\n# remark\n0 0.1\n2\t-0.2\n4, 0.3\n6; 0\n8 .05\n");
   write_text(folder, "three.txt", "0 1 2\n1 2 3\n");
+  write_record_files(folder);
   write_text(folder, "back.txt", "0 1\n2 2\n1 3\n");
   write_text(folder, "table.csv",
              "# made by hand\nt (s),motion rate (1/s),motion (m/s2)\n0,9,0.1\n0.002,9,-0.2\n0.004,9,0.3\n"
@@ -154,8 +277,26 @@ static void records_in_every_form_say_the_same(void **state)
 {
   (void)state;
   const char *folder = folder_of_files();
-  const char *const files[] = {"name: %s/new.AT2", "name: %s/old.at2", "name: %s/old.vt2",
-                               "name: %s/old.DT2", "name: %s/two.txt", "name: %s/table.csv, column: motion, times: t"};
+  const char *const files[] = {"name: %s/new.AT2",
+                               "name: %s/old.at2",
+                               "name: %s/old.vt2",
+                               "name: %s/old.DT2",
+                               "name: %s/two.txt",
+                               "name: %s/table.csv, column: motion, times: t",
+                               "name: %s/fortran.AT2",
+                               "name: %s/milli.AT2",
+                               "name: %s/cm.AT2",
+                               "name: %s/stars.AT2",
+                               "name: %s/metres.AT2",
+                               "name: %s/six.AT2",
+                               "name: %s/early.AT2",
+                               "name: %s/record.txt",
+                               "name: %s/fast.VT2",
+                               "name: %s/values.txt, time step: 2",
+                               "name: %s/two.smc",
+                               "name: %s/one.v2",
+                               "name: %s/three.v2, channel: 2",
+                               "name: %s/csmip.v2"};
   for (size_t k = 0; k < sizeof files / sizeof *files;
        ++k) { /* five values 2 ms apart, 0 before and after; areas by the trapezium rule */
     char file[128], history[160];
@@ -180,6 +321,19 @@ static void records_in_every_form_say_the_same(void **state)
     assert_near(history_integral(h, 2, 1, 11), twice + 3 * 3.5, 1e-12);
     breccia_model_destroy(&m);
   }
+  remove_files(folder);
+}
+
+static void offsets_of_recorders_are_no_acceleration(void **state)
+{
+  (void)state;
+  const char *folder = folder_of_files();
+  char history[80];
+  snprintf(history, sizeof history, "file: {name: %s/knet.NS}", folder);
+  breccia_model *m = with_history(history);
+  const double at[] = {0.05, -0.25, 0.25, -0.05, 0};
+  for (int n = 0; n < 5; ++n) assert_near(history_factor(history_of(m), 2 * n), at[n], 1e-14);
+  breccia_model_destroy(&m);
   remove_files(folder);
 }
 
@@ -216,6 +370,27 @@ static void what_files_lack_is_said(void **state)
       {"name: %s/bare.AT2", "bare.AT2:4: expected the number of values and the time step"},
       {"name: %s/three.txt", "three.txt:1: expected two numbers, time and value, found '0 1 2'"},
       {"name: %s/back.txt", "times must grow from row to row; row 3 has 1 after 2"},
+      {"name: %s/unit.AT2", "unit.AT2:3: the unit 'FURLONGS/FORTNIGHT2' is unknown; expected g, cm/s2, m/s2"},
+      {"name: %s/speed.AT2",
+       "speed.AT2:3: its values are of velocity, and the ending of its name stands for acceleration"},
+      {"name: %s/none.txt", "none.txt: its heading names no unit"},
+      {"name: %s/word.AT2", "word.AT2:6: expected value 3 of 5, a number, found 'x .3 0 .05'"},
+      {"name: %s/long.AT2", "long.AT2:6: its heading says 5 values, but it holds more numbers"},
+      {"name: %s/tail.AT2", "tail.AT2:6: expected the end of the file after 5 values, found 'end'"},
+      {"name: %s/zero.AT2", "zero.AT2:4: expected the number of values and the time step"},
+      {"name: %s/values.txt", "values.txt:2: holds values without times, found '.1'; give the step between them"},
+      {"name: %s/mixed.txt, time step: 2", "mixed.txt:2: expected one value, as in the rows before, found '2 3'"},
+      {"name: %s/two.txt, channel: 1", "'channel' is for files of several channels"},
+      {"name: %s/three.v2", "holds 3 channels of accelerations; choose one with 'channel'"},
+      {"name: %s/three.v2, channel: 4", "holds 3 channels of accelerations, and channel 4 was asked for"},
+      {"name: %s/counts.v0", "counts.v0:36: expected a unit of accelerations, cm/sec2 or g"},
+      {"name: %s/stopped.v2", "expected a time step before these values"},
+      {"name: %s/lasting.v2", "says approximately 9 s, and 5 values with the step of the header, 0.002 s, make 0.01 s"},
+      {"name: %s/uneven.smc", "uneven.smc:18: expected the samples a second"},
+      {"name: %s/spectrum.smc", "spectrum.smc:1: expected the kind of an SMC file"},
+      {"name: %s/shallow.smc", "shallow.smc:11: expected '*'"},
+      {"name: %s/knet.EW", "knet.EW:3: expected a scale factor, like 'Scale Factor 3920(gal)/6182761'"},
+      {"name: %s/knet.UD", "knet.UD: holds 2 values at 500 Hz, and its header says a duration of 9 s; expected 4500"},
       {"name: %s/table.csv, column: force, times: t", "has no column 'force'"},
       {"name: %s/table.csv, column: motion", "has no column 'time'"},
   };
@@ -260,6 +435,7 @@ int main(void)
       cmocka_unit_test(products_and_sums_are_those_of_their_parts),
       cmocka_unit_test(what_was_found_does_not_depend_on_what_was_asked_before),
       cmocka_unit_test(records_in_every_form_say_the_same),
+      cmocka_unit_test(offsets_of_recorders_are_no_acceleration),
       cmocka_unit_test(a_record_that_begins_before_the_run_counts_from_its_beginning),
       cmocka_unit_test(what_files_lack_is_said),
       cmocka_unit_test(the_peak_of_a_history_is_its_farthest_from_zero),

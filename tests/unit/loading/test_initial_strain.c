@@ -29,7 +29,7 @@ static breccia_model *body_of(const Case *c, int space, const char *loads, const
   return model_of(UNITS "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
                         "body: {b: {material: m, lattice: %s, spacing: 0.1%s, shape: {box: {particles: [%s]}}}}\n"
                         "peridynamics: {%s, space: %s, horizon: %s}\nloads: [%s]\nsolve: {%s}\npictures: []\n",
-                  c->law, plane ? "square" : "cubic", plane ? ", thickness: 0.5" : "", plane ? "12, 11" : "8, 7, 8",
+                  c->law, plane ? "square" : "cubic", plane ? ", thickness: 0.5" : "", plane ? "9, 8" : "6, 5, 6",
                   c->formulation, spaces[space],
                   strstr(c->formulation, "micropolar") ? "1.5 spacings" : "2.015 spacings", loads, solve);
 }

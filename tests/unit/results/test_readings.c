@@ -180,16 +180,67 @@ static void one_state_reads_alike_wherever_it_is_told(void **state)
   }
 }
 
+/** Least and largest value of a field over all particles and written states; of vectors their length. */
+static void survey_field(const ResultView *view, const char *name, double *least, double *largest)
+{
+  *least = INFINITY;
+  *largest = -INFINITY;
+  for (int step = 0; step < view->steps; ++step) {
+    int components;
+    double *values = result_view_read(view, name, step, &components, NULL, NULL);
+    assert_non_null(values);
+    for (int64_t n = 0; n < view->particles; ++n) {
+      double square = 0;
+      for (int k = 0; k < components; ++k) square += pow(values[n * components + k], 2);
+      const double value = components > 1 ? sqrt(square) : values[n];
+      *least = fmin(*least, value);
+      *largest = fmax(*largest, value);
+    }
+    free(values);
+  }
+}
+
+/** A layer whose strain along z goes from tension at its foot to the same compression at its top: its mean stresses are of both signs, and no two
+ *  layers of particles have the same. */
+static void the_peaks_of_a_summary_are_extremes_over_all_particles(void **state)
+{
+  (void)state;
+  breccia_model *m = body("results: {every: 1, precision: double, fields: [mean stress, octahedral shear stress, "
+                          "displacement]}\n");
+  const Particles *p = m->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const double z = p->position[2][p->place_of[n]];
+    p->displacement[2][p->place_of[n]] = 1e-3 * z * (0.6 - z);
+  }
+  char path[80], file[112];
+  run_into(m, "peaks", path, sizeof path);
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  ResultView view;
+  assert_int_equal(result_view_open(&view, file, NULL), 0);
+  double least, largest;
+  survey_field(&view, "mean stress", &least, &largest);
+  assert_true(largest > 1e-3); /* kPa: K = 20 / 3 kPa times a strain of some 4e-4 */
+  assert_near(least, -largest, 1e-9 * largest);
+  assert_near(told(path, "mean_stress_lowest"), least, 1e-9 * largest);
+  assert_near(told(path, "mean_stress_highest"), largest, 1e-9 * largest);
+  survey_field(&view, "octahedral shear stress", &least, &largest);
+  assert_near(told(path, "octahedral_shear_stress"), largest, 1e-9 * largest);
+  survey_field(&view, "displacement", &least, &largest);
+  assert_near(told(path, "displacement"), largest, 1e-9 * largest);
+  result_view_close(&view);
+  breccia_model_destroy(&m);
+}
+
 static void a_watched_load_has_the_unit_and_value_of_what_it_prescribes(void **state)
 {
   (void)state;
   const struct {
     const char *load, *heading;
     double value;
-  } cases[] = {{"along: {direction: [0, 3, -4], displacement: 0.25}", "value (m)", 0.25},
+  } cases[] = {{"along: {direction: [0, 3, -4], displacement: 0.0025}", "value (m)", 0.0025},
                {"along: {direction: [0, 3, -4], velocity: 2}", "value (m/s)", 2},
                {"along: {direction: [0, 3, -4], acceleration: 7}", "value (m/s2)", 7},
-               {"displacement: [0, 3, 4]", "value (m)", 5},
+               {"displacement: [0, 0.003, 0.004]", "value (m)", 0.005},
                {"velocity: [0, 3, 4]", "value (m/s)", 5},
                {"acceleration: [0, 3, 4]", "value (m/s2)", 5},
                {"force: [0, 3, 4]", "value (kN)", 5},
@@ -413,6 +464,51 @@ static void a_run_that_began_between_two_rows_goes_on(void **state)
   breccia_error_destroy(&error);
 }
 
+/** A body runs against a wall, and what damping leaves of it springs back: it is pressed most before the stop. A force does work in every step. */
+static void a_run_taken_up_again_tells_what_one_without_a_stop_does(void **state)
+{
+  (void)state;
+  static const char *const keys[] = {"external",
+                                     "kinetic",
+                                     "stored",
+                                     "imbalance",
+                                     "displacement",
+                                     "velocity",
+                                     "mean_stress_lowest",
+                                     "mean_stress_highest",
+                                     "octahedral_shear_stress"};
+  breccia_error *error = breccia_error_create();
+  double first[sizeof keys / sizeof *keys];
+  for (int stops = 0; stops < 2; ++stops) {
+    char path[80];
+    snprintf(path, sizeof path, "%s/%s", folder, stops ? "stopped" : "whole");
+    for (int part = 0; part <= stops; ++part) {
+      breccia_model *m = model_of(
+          "units: {length: m, force: kN, time: s}\n"
+          "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+          "peridynamics: {strain: small}\n"
+          "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+          "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {initial velocity: {translation: [-0.01, 0, 0]}},\n"
+          "        {on: {face: x+}, body force: [0.01, 0.02, 0]}]\n"
+          "solve: {explicit: {time step: 0.02, steps: 40, damping: 3}}\nresults: {every: 5}\n");
+      breccia_run run = {.size = sizeof(breccia_run),
+                         .folder = path,
+                         .steps = stops && !part ? 20 : 0,
+                         .restart = part ? BRECCIA_RESTART_LAST : BRECCIA_RESTART_NO};
+      const int status = breccia_model_run(m, &run, error);
+      if (status && status != BRECCIA_INTERRUPTED) fail_msg("%s", breccia_error_text(error));
+      breccia_model_destroy(&m);
+    }
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+      if (stops && told(path, keys[k]) != first[k])
+        fail_msg("%s: %.17g without a stop, %.17g with one", keys[k], first[k], told(path, keys[k]));
+      first[k] = told(path, keys[k]);
+    }
+  }
+  assert_true(first[0] != 0 && first[6] < -1.5 * first[7]);
+  breccia_error_destroy(&error);
+}
+
 static void results_hold_every_broken_bond_in_its_order(void **state)
 {
   (void)state;
@@ -469,8 +565,10 @@ int main(void)
       cmocka_unit_test(loads_of_stages_peak_within_them),
       cmocka_unit_test(a_bonds_stretch_does_not_count_from_zero_as_its_opening_does),
       cmocka_unit_test(a_run_that_began_between_two_rows_goes_on),
+      cmocka_unit_test(a_run_taken_up_again_tells_what_one_without_a_stop_does),
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
+      cmocka_unit_test(the_peaks_of_a_summary_are_extremes_over_all_particles),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
       cmocka_unit_test(a_ball_is_lit_from_above_and_from_the_left),
       cmocka_unit_test(bodies_in_space_stand_upright_in_pictures),

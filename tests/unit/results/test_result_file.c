@@ -210,6 +210,49 @@ static void no_flipped_byte_is_believed(void **state)
   text_free(&right);
 }
 
+/** Writes over some bytes, or puts back what was there. */
+static void exchange_bytes(int64_t at, void *bytes, size_t size)
+{
+  char *there = malloc(size);
+  const int file = open(path, O_RDWR);
+  assert_int_equal(pread(file, there, size, at), (ssize_t)size);
+  assert_int_equal(pwrite(file, bytes, size, at), (ssize_t)size);
+  close(file);
+  memcpy(bytes, there, size);
+  free(there);
+}
+
+/** Global heaps are metadata without a checksum, in which zeros would let HDF5 walk on the spot for ever, and large sizes read beyond them. */
+static void damaged_heaps_are_refused(void **state)
+{
+  (void)state;
+  size_t size;
+  int heaps = 0;
+  char *all = text_read_file(path, &size), words[512];
+  assert_non_null(all);
+  alarm(60);
+  for (size_t at = 0; at + 4096 <= size; ++at) {
+    if (memcmp(all + at, "GCOL\1\0\0\0", 8)) continue;
+    ++heaps;
+    for (int kind = 0; kind < 4; ++kind) { /* objects, their sizes, their numbers, a byte in a mapping */
+      unsigned char bytes[512] = {0};
+      const size_t count[] = {sizeof bytes, 8, 2, 1}, offset[] = {16, 24, 16, 40};
+      if (kind == 1) memset(bytes, 0xff, 8);
+      if (kind == 3) bytes[0] = (unsigned char)~all[at + 40];
+      exchange_bytes((int64_t)(at + offset[kind]), bytes, count[kind]);
+      Text found = {0};
+      if (is_whole()) fail_msg("heap at %zu, damage %d: believed", at, kind);
+      (void)read_everything(&found, words); /* comes to an end */
+      text_free(&found);
+      exchange_bytes((int64_t)(at + offset[kind]), bytes, count[kind]);
+    }
+  }
+  alarm(0);
+  free(all);
+  assert_true(heaps > 0);
+  assert_true(is_whole());
+}
+
 /** A picture of another field shows displacements too: damaged ones do not turn into the shape at the start. */
 static void what_was_written_of_the_run_is_read_back(void **state)
 {
@@ -267,6 +310,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(what_was_written_of_the_run_is_read_back),
                                      cmocka_unit_test(no_flipped_byte_is_believed),
+                                     cmocka_unit_test(damaged_heaps_are_refused),
                                      cmocka_unit_test(a_picture_does_not_leave_out_a_damaged_displacement)};
   return cmocka_run_group_tests(tests, begin, end);
 }

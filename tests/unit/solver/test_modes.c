@@ -44,12 +44,13 @@ static void a_bar_vibrates_at_odd_quarters_of_its_wave(void **state)
 static void a_cantilever_bends_as_beams_do(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip(); /* the next beams are smaller */
   /* Euler and Bernoulli, less what shear and turning take: 1 - (1.875)^2 / 2 (r / L)^2 (1 + E / (k G)) about (Timoshenko 1921). */
   const double pi = acos(-1), depth = 0.8, length = 7.975, radius = depth / sqrt(12), first = 1.87510407,
                bending = first * first / (2 * pi * length * length) * sqrt(1e4 / 2) * radius,
                wanted = bending * (1 - first * first / 2 * pow(radius / length, 2) * (1 + 2.5 / (5.0 / 6)));
   double found[2];
-  for (int k = under_sanitizers(); k < 2; ++k) {
+  for (int k = 0; k < 2; ++k) {
     breccia_model *m =
         model_of(UNITS SOFT_SOLID
                  "body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 0.2, shape: {box: {particles: "
@@ -423,7 +424,7 @@ static void all_modes_of_one_frequency_are_found(void **state)
   for (int b = 0; b < (under_sanitizers() ? 1 : 3); ++b) {
     double frequency[20] = {0};
     int equal = 0;
-    for (int count = last; count >= first; count -= under_sanitizers() ? 2 : 1) {
+    for (int count = last; count >= first; count -= under_sanitizers() ? 2 : whole_walks() ? 1 : 3 - b % 2) {
       breccia_model *m = model_of("materials: {m: {density: 2400 kg/m3, model: elastic, Young modulus: 30 GPa, Poisson "
                                   "ratio: 0.2}}\n"
                                   "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"

@@ -193,6 +193,7 @@ static void every_body_does_the_same_in_other_units(void **state)
     double numbers[UNITS][NUMBERS];
     int64_t counts[UNITS][3];
     for (int u = 0; u < UNITS; ++u) {
+      if (u == 1 + (int)c % 2 && !whole_walks()) continue; /* against the first units, the other two in turn */
       breccia_model *m = model_of("units: {%s}\n%s", units[u].words, cases[c].deck);
       m->threads = 1; /* of bodies so small more only wait */
       step_surely(m, INT64_MAX);

@@ -20,15 +20,16 @@ static void a_free_body_under_gravity_falls_as_galilei_says(void **state)
 static void a_wave_runs_along_a_slender_bar_at_root_e_over_rho(void **state)
 {
   (void)state;
-  /* validation A6: 5172 m/s; a velocity step at one end, arrival at 2 % of it, 8 cells across. */
+  if (under_sanitizers()) skip(); /* other bodies take explicit steps */
+  /* validation A6: 5172 m/s; a velocity step at one end, arrival at 2 % of it, 5 cells across. */
   breccia_model *m =
       model_of(STEEL "units: {length: m, force: kN, time: s}\n"
                      "peridynamics: {horizon: 2.015 spacings}\n"
-                     "body: {b: {material: m, spacing: 0.0125, shape: {box: {particles: [160, 8, 8]}}}}\n"
+                     "body: {b: {material: m, spacing: 0.0125, shape: {box: {particles: [160, 5, 5]}}}}\n"
                      "loads: [{on: {face: x-, layers: 2}, velocity: [1, free, free], history: {ramp to: 2e-5}}]\n"
                      "solve: {explicit: {end time: 2.6e-4}}\n",
                "0.29");
-  const double near[3] = {0.5, 0.05, 0.05}, far[3] = {1.2, 0.05, 0.05};
+  const double near[3] = {0.5, 0.03, 0.03}, far[3] = {1.2, 0.03, 0.03};
   int32_t a = particles_nearest(m->domain.particles, near), b = particles_nearest(m->domain.particles, far);
   double *v = breccia_model_array(m, "velocity x"), first = 0, second = 0;
   while (second == 0 && m->solver.clock.step < m->solver.clock.steps) {
@@ -115,7 +116,7 @@ static void free_bodies_keep_their_energy(void **state)
     while (n < sizeof of / sizeof *of && strncmp(of[n].peridynamics, key, strlen(key)) != 0) ++n;
     if (n == sizeof of / sizeof *of) fail_msg("%s is not among the free bodies", formulation_at(k)->name);
   }
-  const int steps = under_sanitizers() ? 1000 : 20000;
+  const int steps = under_sanitizers() ? 1000 : whole_walks() ? 20000 : 5000;
   const double mass = 2 * (2 * 5 * 0.01 * 0.3), whole = 0.5 * mass * 0.25; /* of what moves at the start */
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
     breccia_model *m = model_of(
@@ -167,9 +168,11 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
 {
   (void)state;
   const char *const bodies[] = {"spacing: 0.1, shape: {box: {particles: [12, 9, 2]}}",
-                                "spacing: 0.1, shape: {box: {particles: [8, 8, 8]}}",
+                                "spacing: 0.1, shape: {box: {particles: [6, 6, 6]}}",
                                 "spacing: 0.1, lattice: square, thickness: 1, shape: {box: {particles: [15, 11]}}"};
   const char *const controls[] = {"silling: 0.1", "silling: 1", "wan: 1", "none: yes"};
+  /* What grows by 1 % in a step is 1e6 times as large after 1400 of them. */
+  const int64_t steps = under_sanitizers() ? 300 : whole_walks() ? 4000 : 1500;
   for (int b = under_sanitizers() ? 2 : 0; b < 3; ++b)
     for (int c = 0; c < 4; ++c)
       for (int over = 0; over < 2; ++over) {
@@ -181,7 +184,7 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
         m->solver.clock.time_step = m->solver.clock.stable * (over ? 1.1 : 1);
         const Particles *p = m->domain.particles;
         for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
-        const int stopped = breccia_model_step(m, 4000, NULL);
+        const int stopped = breccia_model_step(m, steps, NULL);
         double largest = 0;
         for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement[0][p->place_of[n]]));
         if (over ? !stopped && largest < 1e-3 : stopped || !(largest < 1e-3))
@@ -223,8 +226,8 @@ static void threads_do_not_change_a_bit(void **state)
 {
   (void)state;
   double *reference[3] = {0};
-  const int threads[] = {1, 2, 3, 8};
-  for (int k = 0; k < 4; ++k) {
+  const int threads[] = {1, 8, 2, 3};
+  for (int k = 0; k < (whole_walks() ? 4 : 2); ++k) {
     breccia_model *m = shaken_plate("");
     m->threads = threads[k];
     breccia_model_step(m, 600, NULL);
@@ -386,8 +389,10 @@ static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed
   assert_int_equal(status, BRECCIA_FAILURE);
   holds_words(
       breccia_error_text(error),
-      "has blown up: particle |] moves at |, more than |times the waves of the materials (77.46) and the speeds at the "
-      "start and prescribed (0) together; the time step of 0.0005 s (stable step |) is too long for what happens, or "
+      "has blown up: particle |] moves at | m/s, more than |times the waves of the materials (77.46 m/s) and the "
+      "speeds at "
+      "the start and prescribed (0 m/s) together; the time step of 0.0005 s (stable step |) is too long for what "
+      "happens, or "
       "bonds that break or close give more than they got: choose a smaller 'safety' or 'time step', more zero-energy "
       "control, or leave contact out");
   assert_true(absurd > 0 && m->solver.clock.step <= absurd + 10);
@@ -417,10 +422,10 @@ static void a_rotation_that_blows_up_stops_a_run_too(void **state)
     assert_int_equal(breccia_model_step(m, 1, error), k ? BRECCIA_FAILURE : BRECCIA_OK);
     assert_int_equal(ledger_has_blown_up(&m->solver.ledger), k);
     if (k)
-      holds_words(
-          breccia_error_text(error),
-          "step 1 (|: the computation has blown up: particle 31 at [|] turns at 1e+09, so that kinetic energy is as if "
-          "all mass moved at |, more than 10 times the waves of the materials (77.46) ");
+      holds_words(breccia_error_text(error),
+                  "step 1 (|: the computation has blown up: particle 31 at [|] turns at 1e+09 1/s, so that kinetic "
+                  "energy is as "
+                  "if all mass moved at |, more than 10 times the waves of the materials (77.46 m/s) ");
     breccia_model_destroy(&m);
     breccia_error_destroy(&error);
   }
@@ -492,21 +497,46 @@ static void a_step_above_the_stable_one_is_refused(void **state)
              "peridynamics: {space: 1-D, formulation: bond-based, horizon: 1.5 spacings}\nsolve: {explicit: {%s}}\n",
              steps[k]);
     words = refusal_of(deck);
-    if (!strstr(words, "the stable time step could not be found: no bond joins any particles")) fail_msg("%s", words);
+    if (!strstr(words,
+                "deck:4:62: horizon: no bond joins any of the 2 particles within 0.15 m; choose a longer horizon"))
+      fail_msg("%s", words);
     free(words);
   }
 }
 
 /* ---- static check of the example against finite elements ---- */
 
+/** Returns the plate of the example: by its own deck, in damped motion, with BRECCIA_WHOLE; else by a static solver and
+ *  three particles that hold the body as a whole, in place of 'explicit'. */
+static breccia_model *plate_with_crack(void)
+{
+  breccia_model *m;
+  if (whole_walks()) {
+    assert_int_equal(breccia_model_load_file(EXAMPLES "/plate-with-crack/rest.yaml", NULL, &m, NULL), 0);
+    return m;
+  }
+  char deck[4096], *solve;
+  FILE *file = fopen(EXAMPLES "/plate-with-crack/rest.yaml", "r");
+  assert_non_null(file);
+  deck[fread(deck, 1, sizeof deck - 1, file)] = 0;
+  fclose(file);
+  solve = strstr(deck, "solve: {explicit");
+  assert_non_null(solve);
+  *solve = 0;
+  return model_of("%ssolve: [{static: {increments: 1}, loads: [\n"
+                  "  {on: {nearest: [1.035, 1.89, 0]}, displacement: [0, 0, 0]},\n"
+                  "  {on: {nearest: [0, 1.89, 0]}, displacement: [free, 0, 0]},\n"
+                  "  {on: {nearest: [1.035, 0.9, 0]}, displacement: [free, free, 0]}]}]\n",
+                  deck);
+}
+
 static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
 {
   (void)state;
   if (under_sanitizers()) skip();
   /* validation: 500 kN/m3 open the mouth by 3.34 mm, converged quadrilaterals; control 0.1; 2 %. */
-  breccia_model *m;
-  assert_int_equal(breccia_model_load_file(EXAMPLES "/plate-with-crack/rest.yaml", NULL, &m, NULL), 0);
-  assert_int_equal(breccia_model_step(m, m->solver.clock.steps, NULL), 0);
+  breccia_model *m = plate_with_crack();
+  step_surely(m, INT64_MAX);
   const double left[3] = {1.02, 0, 0}, right[3] = {1.08, 0, 0};
   const Particles *p = m->domain.particles;
   int32_t a = particles_nearest(p, left), b = particles_nearest(p, right);

@@ -191,7 +191,7 @@ static breccia_model *struck_plate(void)
       "materials: {clay: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, "
       "octahedral strength: 30}}\n"
       "body: {plate: {material: clay, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: "
-      "[24, 16]}}}}\n"
+      "[16, 12]}}}}\n"
       "peridynamics: {space: plane stress}\n"
       "failure: {critical stretch: 0.004, near grips: break}\n"
       "loads: [{on: {face: y-, layers: 3}, displacement: [free, 0]}, {gravity: [0, -50]}]\n"
@@ -213,6 +213,7 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
   assert_true(whole->solver.records[0].came_to_rest == 1);
   for (int stage = 0; stage < 3; ++stage)
     for (int at_end = 0; at_end < 2; ++at_end) {
+      if (under_sanitizers() && stage + at_end != 1) continue;
       char folder[] = "/tmp/breccia-XXXXXX", command[64];
       const StageRecord *r = &whole->solver.records[stage];
       assert_non_null(mkdtemp(folder));
@@ -390,8 +391,9 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
   assert_int_equal(system(command), 0);
 }
 
-/** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance. */
-static void a_body_that_is_turned_inside_out_is_told(void **state)
+/** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance; and a bar of steel that is drawn to hundreds
+ *  of its lengths goes on to flow. Neither is a result. */
+static void bodies_that_no_body_can_become_stop_the_run(void **state)
 {
   (void)state;
   char folder[] = "/tmp/breccia-XXXXXX", command[64];
@@ -406,10 +408,28 @@ static void a_body_that_is_turned_inside_out_is_told(void **state)
       "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: x-}, support: {held: across}},\n"
       "        {on: {face: y+}, displacement: [free, -3], history: {ramp to: 1}}]\n"
       "solve: {static: {increments: 2}}\n");
-  if (breccia_model_run(m, &run, error)) fail_msg("%s", breccia_error_text(error));
+  assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_FAILURE);
   const char *words = breccia_model_outcome(m);
   if (!strstr(words, "warning: 100 particles are turned inside out, the first at [0.05, 0.05, 0] m"))
     fail_msg("%s", words);
+  words = breccia_error_text(error);
+  if (!strstr(words, "step 2 (time 1 s): particle ") || !strstr(words, " is turned inside out (det F = -"))
+    fail_msg("%s", words);
+  breccia_model_destroy(&m);
+  breccia_error_destroy(&error);
+  error = breccia_error_create();
+  m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {c: {model: j2, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, yield stress: 3 MPa}}\n"
+      "body: {beam: {material: c, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {particles: [12, 6], "
+      "first particle: [0, 0]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane stress}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, {name: pull, on: {face: x+, layers: 1}, velocity: "
+      "[1e5, free]}]\n"
+      "solve: {explicit: {steps: 400}}\n");
+  assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_FAILURE);
+  words = breccia_error_text(error);
+  if (!strstr(words, "step 100 (time ") || !strstr(words, "particles have moved apart by ")) fail_msg("%s", words);
   breccia_model_destroy(&m);
   breccia_error_destroy(&error);
   snprintf(command, sizeof command, "rm -r %s", folder);
@@ -634,7 +654,7 @@ int main(void)
       cmocka_unit_test(loads_of_later_stages_are_watched_from_the_beginning),
       cmocka_unit_test(a_run_that_is_stopped_says_how_far_it_has_come),
       cmocka_unit_test(a_wish_to_stop_is_heard_within_an_increment),
-      cmocka_unit_test(a_body_that_is_turned_inside_out_is_told),
+      cmocka_unit_test(bodies_that_no_body_can_become_stop_the_run),
       cmocka_unit_test(histories_have_a_row_for_each_long_step),
       cmocka_unit_test(explicit_steps_behind_long_ones_are_done),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),

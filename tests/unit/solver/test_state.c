@@ -307,9 +307,18 @@ static breccia_model *pulled_bar(const char *strain, const char *more)
            "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
            "body: {b: {material: m, spacing: 1, shape: {box: {particles: [21, 7, 9]}}}}\n"
            "peridynamics: {formulation: correspondence, strain: %s}\n"
-           "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.3, 0.1, 0]}]\n%s",
-           strain, more);
-  return model_of("%s", deck);
+           "%s%s",
+           strain,
+           strstr(more, "loads:")
+               ? ""
+               : "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.3, 0.1, 0]}]\n",
+           more);
+  breccia_error *error = breccia_error_create();
+  const breccia_options options = {.size = sizeof options, .force = 1}; /* steps may be longer than damping allows */
+  breccia_model *model;
+  if (breccia_model_load_string(deck, "deck", &options, &model, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  return model;
 }
 
 /** Evaluations of elastic bodies may leave strains and stresses out: whoever looks finds the bits that they would have written, energies, too, and force
@@ -357,11 +366,8 @@ static void strains_that_are_left_out_are_found_to_the_same_bits(void **state)
   }
 }
 
-/** Steps that leave strains and stresses out are taken in place, to the same bits, and one that fails gives back the motion that it began with but for roundings. */
-static void steps_in_place_lead_to_the_same_bits(void **state)
+static void try_steps_in_place(const char *solve)
 {
-  (void)state;
-  const char *solve = "solve: {explicit: {steps: 40, damping: 0.02}}\n";
   breccia_model *in_place = pulled_bar("green-lagrange", solve), *apart = pulled_bar("green-lagrange", solve);
   const Particles *p = in_place->domain.particles, *q = apart->domain.particles;
   apart->domain.may_leave_tensors = false;
@@ -384,6 +390,16 @@ static void steps_in_place_lead_to_the_same_bits(void **state)
   model_leave(&entry, BRECCIA_OK, NULL);
   breccia_model_destroy(&in_place);
   breccia_model_destroy(&apart);
+}
+
+/** Steps that leave strains and stresses out are taken in place, to the same bits, and a step that fails gives back the motion with which it began, but for
+ *  round-off; also where damping is 2 / dt, so that the velocity in the middle of a step says nothing of that at its beginning. */
+static void steps_in_place_lead_to_the_same_bits(void **state)
+{
+  (void)state;
+  try_steps_in_place("solve: {explicit: {steps: 40, damping: 0.02}}\n");
+  try_steps_in_place("loads: [{gravity: [3, 1, 0]}]\n"
+                     "solve: {explicit: {steps: 40, time step: 0.015625, damping: 128}}\n");
 }
 
 /** Stages that linearise, what breaks, and watches of stresses need them in every step. */

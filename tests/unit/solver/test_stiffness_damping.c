@@ -198,7 +198,7 @@ static void what_yields_is_damped_by_its_elastic_stiffness(void **state)
 {
   (void)state;
   static const char *const solvers[] = {"explicit: {end time: 0.03",
-                                        "implicit: {end time: 0.03, time step: 1e-4, local error: 1"};
+                                        "implicit: {end time: 0.03, time step: 2e-4, local error: 1"};
   static const char *const laws[] = {
       "j2, bulk modulus: 6666, shear modulus: 4000, density: 2, yield stress: 20",
       "mazars, bulk modulus: 6666, shear modulus: 4000, density: 2, tensile strength: 25, fracture "

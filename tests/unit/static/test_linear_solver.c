@@ -310,7 +310,7 @@ static void the_number_of_products_does_not_grow_with_the_body(void **state)
             {"bond-based", SPRINGS, 12},
             {"ordinary", ELASTIC, 9},
             {"micropolar", LINKS, 10}};
-  for (int c = 0; c < 4; c += under_sanitizers() ? 3 : 1) {
+  for (int c = whole_walks() ? 0 : 1; c < 4; c += under_sanitizers() ? 3 : whole_walks() ? 1 : 2) {
     int64_t products[2];
     for (int twice = 0; twice < 2; ++twice) {
       const int n = of[c].n << twice;
@@ -391,6 +391,7 @@ static void no_kind_of_body_takes_more_products_than_it_did(void **state)
   int wrong = 0;
   for (size_t c = 0; c < sizeof of / sizeof *of; ++c) {
     if (under_sanitizers() && c % 4) continue;
+    if (!strcmp(of[c].name, "a large plate") && !whole_walks()) continue;
     Problem p = pose(model_of(UNITS "%s" END, of[c].deck), of[c].mass);
     const Particles *q = p.domain->particles;
     p.solver.stiffness_share = of[c].share;

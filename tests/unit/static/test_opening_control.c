@@ -133,7 +133,8 @@ static void a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy(void **
 {
   static const char *const loads[] = {"force: [1, 0]", "displacement: [0.1 mm, free]"};
   (void)state;
-  for (int way = under_sanitizers(); way < 2; ++way) {
+  /* the next test pulls the bar by a force */
+  for (int way = !whole_walks(); way < 2; ++way) {
     breccia_model *model =
         model_of(BAR, loads[way], 60, "opening between: [[0.255, 0.025], [0.345, 0.025]], to: 0.12 mm");
     const Domain *d = &model->domain;
