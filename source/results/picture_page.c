@@ -43,23 +43,26 @@ typedef struct Ticks {
   int count;
 } Ticks;
 
+/** Returns the ticks from `low` to `high` at multiples of `distance`; none where a range without a length has no distance. */
+static Ticks ticks_at(double distance, double low, double high)
+{
+  const double first = ceil(low / distance - 1e-9), more = floor(high / distance + 1e-9) - first;
+  return (Ticks){distance, first * distance, more >= 0 ? (int)more + 1 : 0};
+}
+
 /** Ticks from `low` to `high` on `points` of paper, each `apart` from the next at least. */
 static Ticks place_ticks(double low, double high, double points, double apart)
 {
   double number = fmax(1, fmin(6, points / apart)), distance = scale_ticks(high - low, number);
   while (distance / (high - low) * points < apart && number > 0.2) distance = scale_ticks(high - low, number *= 0.7);
-  const double first = ceil(low / distance - 1e-9);
-  const double more = floor(high / distance + 1e-9) - first; /* no number where low and high are one */
-  return (Ticks){distance, first * distance, more >= 0 ? (int)more + 1 : 0};
+  return ticks_at(distance, low, high);
 }
 
 /** A narrow body may lie between two ticks: then nearer ones, of which words that take `room` each leave one. */
 static Ticks one_at_least(Ticks t, double low, double high, double points, double room)
 {
-  for (double number = 1; !t.count && number < 1000; number *= 1.5) {
-    const double distance = scale_ticks(high - low, number), first = ceil(low / distance - 1e-9);
-    t = (Ticks){distance, first * distance, (int)(floor(high / distance + 1e-9) - first) + 1};
-  }
+  for (double number = 1; !t.count && number < 1000; number *= 1.5)
+    t = ticks_at(scale_ticks(high - low, number), low, high);
   if (t.count > 1 && room > t.distance / (high - low) * points) t.count = 1;
   return t;
 }
