@@ -162,6 +162,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     work = os.path.realpath(tempfile.mkdtemp(prefix="breccia-kills-"))
+    options.shim = shutil.copy(options.shim, work)  # LD_PRELOAD ends a name at a blank
     end = time.monotonic() + options.seconds
     tried = kills = restarts = 0
     lost = []

@@ -228,6 +228,7 @@ class Walk:
         self.known = known  # places of calls that other verbs were refused; those of this one are added
         self.before, self.command, self.files = WALKS[verb]
         self.folder = tempfile.mkdtemp(prefix="memory.")
+        self.shim = shutil.copy(options.shim, self.folder)  # LD_PRELOAD ends a name at a blank
         self.ends = collections.Counter()
         self.start = os.path.join(self.folder, "start")
         os.mkdir(self.start)
@@ -243,7 +244,7 @@ class Walk:
         """One run of the command in a folder. call None: with nothing in the way; must: it is to go well then"""
         environment = dict(os.environ, OMP_NUM_THREADS="1")
         if call is not None:
-            environment.update(LD_PRELOAD=self.options.shim, BRECCIA_FAIL_AT=str(call), BRECCIA_FAIL_ON="1" if on else "0",
+            environment.update(LD_PRELOAD=self.shim, BRECCIA_FAIL_AT=str(call), BRECCIA_FAIL_ON="1" if on else "0",
                                BRECCIA_FAIL_WHOSE="all" if self.options.libraries else "program",
                                BRECCIA_FAIL_COUNT=os.path.join(self.folder, "count") if call == 0 else "")
         done = subprocess.run([self.options.command] + words_of(command), cwd=folder, env=environment, stdin=subprocess.DEVNULL,
