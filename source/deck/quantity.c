@@ -76,8 +76,8 @@ static bool open_set(UnitSet *set, ut_system *system, const char *const names[3]
   *set = (UnitSet){.system = system};
   if (!system) return false;
   bool all = true;
-  set->degree = ut_parse(system, "deg", UT_ASCII);
-  for (int k = 0; k < 3; ++k) all &= (set->base[k] = ut_parse(system, names[k], UT_UTF8)) != NULL;
+  set->degree = unit_parse(system, "deg", UT_ASCII);
+  for (int k = 0; k < 3; ++k) all &= (set->base[k] = unit_parse(system, names[k], UT_UTF8)) != NULL;
   return all;
 }
 
@@ -102,7 +102,7 @@ static bool shifts(const char *words, const char *at)
 static ut_unit *find_unit(const Units *units, const char *words, Text *reason)
 {
   UnitSet *usual = &units->sets[USUAL], *whole = &units->sets[WHOLE];
-  ut_unit *unit = usual->system ? ut_parse(usual->system, words, UT_UTF8) : NULL;
+  ut_unit *unit = usual->system ? unit_parse(usual->system, words, UT_UTF8) : NULL;
   if (unit) return unit;
   if (!whole->system) {
     const char *const names[3] = {units->name[0], units->name[1], units->name[2]};
@@ -110,7 +110,7 @@ static ut_unit *find_unit(const Units *units, const char *words, Text *reason)
     if (!system) return NULL;
     open_set(whole, system, names);
   }
-  unit = ut_parse(whole->system, words, UT_UTF8);
+  unit = unit_parse(whole->system, words, UT_UTF8);
   if (!unit) text_add(reason, "unit '%s' is not known", words);
   return unit;
 }
@@ -218,7 +218,7 @@ Units *units_create(const char *length, const char *force, const char *time, Err
   static const char *const examples[3] = {"m, mm or ft", "N, kN or lbf", "s or ms"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
-    ut_unit *given = units_parse(units, names[k], &reason), *standard = ut_parse(set->system, wanted[k], UT_ASCII);
+    ut_unit *given = units_parse(units, names[k], &reason), *standard = unit_parse(set->system, wanted[k], UT_ASCII);
     if (!given)
       text_add(&reason, "; expected a unit of %s, like %s", what[k], examples[k]);
     else if (!ut_are_convertible(given, standard))
@@ -390,7 +390,7 @@ static bool explain_weight(const Units *units, const Dimension *dimension, const
     return false;
   Text why = {0};
   ut_unit *unit = find_unit(units, given, &why),
-          *target = unit ? ut_parse(ut_get_system(unit), "N/m3", UT_ASCII) : NULL;
+          *target = unit ? unit_parse(ut_get_system(unit), "N/m3", UT_ASCII) : NULL;
   cv_converter *converter = unit && target ? ut_get_converter(unit, target) : NULL;
   if (converter)
     text_add(reason, "'%s' is a weight per volume; the density is its mass, %.5g kg/m3", words,

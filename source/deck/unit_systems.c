@@ -4,8 +4,20 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <string.h>
 #include <unistd.h>
+
+/* The parser of UDUNITS-2 keeps its state in static variables, and ends the program where two threads are in it at once. */
+static pthread_mutex_t units_lock = PTHREAD_MUTEX_INITIALIZER;
+
+ut_unit *unit_parse(const ut_system *system, const char *words, ut_encoding encoding)
+{
+  pthread_mutex_lock(&units_lock);
+  ut_unit *unit = ut_parse(system, words, encoding);
+  pthread_mutex_unlock(&units_lock);
+  return unit;
+}
 
 /* In the order in which they are made. */
 static const struct {
@@ -80,7 +92,7 @@ ut_system *unit_system_usual(void)
   make_base("second", "s", ut_new_base_unit(system));
   make_base("radian", "rad", ut_new_dimensionless_unit(system));
   for (size_t k = 0; k < sizeof usual / sizeof *usual; ++k) {
-    ut_unit *of = ut_parse(system, usual[k].of, UT_ASCII);
+    ut_unit *of = unit_parse(system, usual[k].of, UT_ASCII);
     if (!of || usual[k].prefix == 0) {
       map_symbol(usual[k].symbol, of);
       continue;
@@ -105,7 +117,9 @@ static int why_unopened(void)
 
 ut_system *unit_system_whole(Text *reason)
 {
+  pthread_mutex_lock(&units_lock);
   ut_system *system = ut_read_xml(NULL);
+  pthread_mutex_unlock(&units_lock);
   if (!system) {
     const int number = why_unopened();
     const bool full = number == EMFILE || number == ENFILE;
@@ -117,7 +131,7 @@ ut_system *unit_system_whole(Text *reason)
   for (size_t k = 0; k < sizeof additions / sizeof *additions; ++k) {
     ut_unit *known = ut_get_unit_by_name(system, additions[k].name);
     if (!known) {
-      ut_unit *unit = ut_parse(system, additions[k].meaning, UT_ASCII);
+      ut_unit *unit = unit_parse(system, additions[k].meaning, UT_ASCII);
       if (unit) ut_map_name_to_unit(additions[k].name, UT_ASCII, unit);
       ut_free(unit);
     }

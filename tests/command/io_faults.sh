@@ -55,7 +55,7 @@ same() { # same FOLDER WHAT: all that a run leaves is as in the whole run
 fault() {
   local what="call $1, $3$([ "$4" = 1 ] && echo ", for good")" status
   rm -rf faulty count
-  FAULT_FOLDER="$work/faulty$within" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$work/libio_faults.so" \
+  FAULT_FOLDER="$work/faulty$within" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD=./libio_faults.so \
     "$breccia" run $deck.yaml --threads 1 --output faulty > told 2> out
   status=$?
   if [ "$(wc -c < count)" -lt "$1" ]; then # on a fast disk states are copied more often than on a slow one
@@ -85,7 +85,7 @@ fault() {
 }
 
 export FAULT_EXCEPT=run.lock # nobody needs what is in it
-FAULT_FOLDER="$work/counted" FAULT_COUNT="$work/count" LD_PRELOAD="$work/libio_faults.so" run counted
+FAULT_FOLDER="$work/counted" FAULT_COUNT="$work/count" LD_PRELOAD=./libio_faults.so run counted
 calls=$(wc -c < count)
 [ "$calls" -gt 200 ] || fail "only $calls calls were seen: the walk does not see how files are written"
 same counted "no fault"
@@ -113,7 +113,7 @@ fi
 # What a checkpoint counts on is brought to the disk before it: results and histories once for each of the three checkpoints.
 for file in results.vtkhdf end.csv energy.csv; do
   rm -f count
-  FAULT_FOLDER="$work/settled/$file" FAULT_COUNT="$work/count" LD_PRELOAD="$work/libio_faults.so" run settled
+  FAULT_FOLDER="$work/settled/$file" FAULT_COUNT="$work/count" LD_PRELOAD=./libio_faults.so run settled
   settled=$(tr -dc s < count | wc -c)
   [ "$settled" -ge 3 ] || fail "$file was brought to the disk $settled times, for 3 checkpoints"
   checks=$((checks + 1))
@@ -123,7 +123,7 @@ done
 export FAULT_LARGER=300000000
 journals=0
 rm -f count
-FAULT_FOLDER="$work/large" FAULT_COUNT="$work/count" LD_PRELOAD="$work/libio_faults.so" run large
+FAULT_FOLDER="$work/large" FAULT_COUNT="$work/count" LD_PRELOAD=./libio_faults.so run large
 large=$(wc -c < count)
 same large "large results"
 if [ -n "${IO_FAULTS:-}" ]; then
@@ -141,7 +141,7 @@ run still || fail "the run at rest failed: $(cat out)"
 [ "$(json still/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks at rest, the test is too tame"
 for within in '' /solution.txt; do # what it tells of its equations is written seldom
   rm -f count
-  FAULT_FOLDER="$work/resting$within" FAULT_COUNT="$work/count" LD_PRELOAD="$work/libio_faults.so" run resting
+  FAULT_FOLDER="$work/resting$within" FAULT_COUNT="$work/count" LD_PRELOAD=./libio_faults.so run resting
   resting=$(wc -c < count)
   [ "$resting" -gt 10 ] || fail "only $resting calls on resting$within were seen"
   same resting "at rest"
@@ -150,7 +150,7 @@ done
 deck=bar whole=whole within=
 
 # A folder that cannot be made: by a full disk it is a failure, by its name the user's mistake.
-FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD="$work/libio_faults.so" run deep/inner; equal "no folder: status" $? 1
+FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD=./libio_faults.so run deep/inner; equal "no folder: status" $? 1
 equal "no folder" "$(cat out)" "deep/inner: the folder cannot be made: No space left on device"
 run bar.yaml/inner; equal "no folder in a file: status" $? 2
 
@@ -159,7 +159,7 @@ run half --steps 30 || fail "the first half failed: $(cat out)"
 reading() { # reading NUMBER COMMAND...: one command whose NUMBERth call that reads in 'faulty' fails
   rm -rf faulty count
   cp -r half faulty
-  FAULT_FOLDER="$work/faulty" FAULT_COUNT="$work/count" FAULT_READS=1 FAULT_AT=$1 FAULT_ERROR=5 LD_PRELOAD="$work/libio_faults.so" \
+  FAULT_FOLDER="$work/faulty" FAULT_COUNT="$work/count" FAULT_READS=1 FAULT_AT=$1 FAULT_ERROR=5 LD_PRELOAD=./libio_faults.so \
     "$breccia" "${@:2}" > told 2> out
 }
 restart="run bar.yaml --quiet --threads 1 --output faulty --restart" look="plot faulty --field damage" reads=
@@ -180,7 +180,7 @@ done
 
 # Signals interrupt calls, and a call may do less than it was asked for: nothing of it is seen.
 trickle() { # trickle FOLDER COMMAND...: one command that reads and writes in the folder by halves
-  FAULT_FOLDER="$work/$1" FAULT_TRICKLES=1 LD_PRELOAD="$work/libio_faults.so" "$breccia" "${@:2}" > out 2>&1
+  FAULT_FOLDER="$work/$1" FAULT_TRICKLES=1 LD_PRELOAD=./libio_faults.so "$breccia" "${@:2}" > out 2>&1
   equal "by halves: ${*:2}: status: $(cat out)" $? 0
 }
 rm -rf faulty looked
@@ -199,7 +199,7 @@ equal "a picture by halves" "$(cksum < slow.png)" "$(cksum < whole.png)"
 sed 's/^pictures: .*/pictures: [{field: damage}, {curve: "end.time : end.x"}]/' bar.yaml > drawn.yaml
 pictures() { # pictures [NUMBER]: one run whose NUMBERth call on a picture fails, in each process
   rm -rf drawn drawn-count
-  FAULT_FOLDER="$work/drawn/pictures" FAULT_COUNT="$work/drawn-count" FAULT_AT=$1 FAULT_ERROR=28 LD_PRELOAD="$work/libio_faults.so" \
+  FAULT_FOLDER="$work/drawn/pictures" FAULT_COUNT="$work/drawn-count" FAULT_AT=$1 FAULT_ERROR=28 LD_PRELOAD=./libio_faults.so \
     "$breccia" run drawn.yaml --quiet --threads 1 --output drawn > out 2>&1
 }
 pictures 0; equal "pictures: status" $? 0

@@ -5,6 +5,8 @@
 #include "deck/units.h"
 #include "support.h"
 
+#include <pthread.h>
+
 /** Reads a quantity of a deck in some units. @return 0, or 1 with words of what is wrong */
 static int read_in(const char *const names[3], const char *dimension, const char *words, double *value, Text *reason)
 {
@@ -390,6 +392,35 @@ static void intervals_say_which_numbers_they_hold(void **state)
   assert_true(interval_contains(NULL, -5));
 }
 
+/** Reads a unit of the usual ones and one of the database, again and again, until one is wrong. */
+static void *read_units_for_long(void *failed)
+{
+  for (int round = 0; round < 300 && !*(int *)failed; ++round) {
+    Units *units = units_create("m", "kN", "s", NULL);
+    Text reason = {0};
+    double value = 0;
+    *(int *)failed |= units_read(units, dimension_find("stress"), "3.5 N.mm^-2", &value, &reason) || value != 3500;
+    if (round % 100 == 0)
+      *(int *)failed |=
+          units_read(units, dimension_find("length"), "2 furlong", &value, &reason) || fabs(value - 402.3) > 0.1;
+    text_free(&reason);
+    units_destroy(&units);
+  }
+  return NULL;
+}
+
+static void units_are_read_by_many_threads_at_once(void **state)
+{
+  (void)state;
+  enum { THREADS = 4 };
+  pthread_t thread[THREADS];
+  int failed[THREADS] = {0};
+  for (int n = 0; n < THREADS; ++n)
+    assert_int_equal(pthread_create(&thread[n], NULL, read_units_for_long, &failed[n]), 0);
+  for (int n = 0; n < THREADS; ++n) pthread_join(thread[n], NULL);
+  for (int n = 0; n < THREADS; ++n) assert_int_equal(failed[n], 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -402,6 +433,7 @@ int main(void)
       cmocka_unit_test(units_of_a_deck_must_be_of_their_kind),
       cmocka_unit_test(measures_are_written_in_units_that_read_as_the_same),
       cmocka_unit_test(intervals_say_which_numbers_they_hold),
+      cmocka_unit_test(units_are_read_by_many_threads_at_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
