@@ -86,11 +86,13 @@ static const ut_visitor visitor = {visit_basic, visit_product, visit_galilean, v
 
 int measure_unit(const Units *units, const char *words, Measure *measure, Text *reason)
 {
-  ut_unit *unit = units_parse(units, words, reason);
   *measure = (Measure){.value = 1};
-  if (!unit) return 1;
-  const ut_status status = ut_accept_visitor(unit, &visitor, measure);
+  units_lock();
+  ut_unit *unit = units_parse(units, words, reason);
+  const ut_status status = unit ? ut_accept_visitor(unit, &visitor, measure) : UT_UNKNOWN;
   ut_free(unit);
+  units_unlock();
+  if (!unit) return 1;
   measure->cycles = units_count_cycles(words) && measure->power[MEASURE_TIME] == -1;
   if (status == UT_SUCCESS) return 0;
   text_add(reason, "unit '%s' is none of length, force, mass, time or angle", words);

@@ -76,8 +76,8 @@ static bool open_set(UnitSet *set, ut_system *system, const char *const names[3]
   *set = (UnitSet){.system = system};
   if (!system) return false;
   bool all = true;
-  set->degree = unit_parse(system, "deg", UT_ASCII);
-  for (int k = 0; k < 3; ++k) all &= (set->base[k] = unit_parse(system, names[k], UT_UTF8)) != NULL;
+  set->degree = ut_parse(system, "deg", UT_ASCII);
+  for (int k = 0; k < 3; ++k) all &= (set->base[k] = ut_parse(system, names[k], UT_UTF8)) != NULL;
   return all;
 }
 
@@ -102,7 +102,7 @@ static bool shifts(const char *words, const char *at)
 static ut_unit *find_unit(const Units *units, const char *words, Text *reason)
 {
   UnitSet *usual = &units->sets[USUAL], *whole = &units->sets[WHOLE];
-  ut_unit *unit = usual->system ? unit_parse(usual->system, words, UT_UTF8) : NULL;
+  ut_unit *unit = usual->system ? ut_parse(usual->system, words, UT_UTF8) : NULL;
   if (unit) return unit;
   if (!whole->system) {
     const char *const names[3] = {units->name[0], units->name[1], units->name[2]};
@@ -110,18 +110,19 @@ static ut_unit *find_unit(const Units *units, const char *words, Text *reason)
     if (!system) return NULL;
     open_set(whole, system, names);
   }
-  unit = unit_parse(whole->system, words, UT_UTF8);
+  unit = ut_parse(whole->system, words, UT_UTF8);
   if (!unit) text_add(reason, "unit '%s' is not known", words);
   return unit;
 }
 
-ut_unit *units_parse(const Units *units, const char *words, Text *reason)
+/** Says why a unit is not understood as its writer may have meant it. @return whether it is so */
+static bool explain_unit(const char *words, Text *reason)
 {
   for (const char *c = words; *c; ++c) {
     if (*c == '"' || *c == '\'') {
       text_add(reason, "unit '%s': quotation marks are angles to some and inches to others; write in, ft or deg",
                words);
-      return NULL;
+      return true;
     }
     if (*c == '^' || *c == '*') {
       const char *power = c + 1 + (c[0] == '*' && c[1] == '*');
@@ -129,27 +130,35 @@ ut_unit *units_parse(const Units *units, const char *words, Text *reason)
       double exponent = *c == '^' || c[1] == '*' ? strtod(power, &end) : 1;
       if (exponent != floor(exponent)) {
         text_add(reason, "unit '%s': powers must be whole numbers", words);
-        return NULL;
+        return true;
       }
     }
     if (!strncmp(c, "ton", 3) && !isalpha((unsigned char)c[3]) && (c == words || !isalpha((unsigned char)c[-1]))) {
       text_add(reason, "unit '%s': 'ton' may be short, long or metric; write t (1000 kg) or lb", words);
-      return NULL;
+      return true;
     }
     if (!strncmp(c, "gr", 2) && !isalpha((unsigned char)c[2]) && (c == words || !isalpha((unsigned char)c[-1]))) {
       text_add(reason, "unit '%s': 'gr' is a grain of 65 mg to some; write g", words);
-      return NULL;
+      return true;
     }
     if (!strncmp(c, "rpm", 3) && !isalpha((unsigned char)c[3]) && (c == words || !isalpha((unsigned char)c[-1]))) {
       text_add(reason, "unit '%s': 'rpm' is an angle by time to some; write turns per second as Hz", words);
-      return NULL;
+      return true;
     }
     if (*c == '@' || shifts(words, c)) {
       text_add(reason, "unit '%s': units with an origin are not understood here", words);
-      return NULL;
+      return true;
     }
   }
-  return find_unit(units, words, reason);
+  return false;
+}
+
+ut_unit *units_parse(const Units *units, const char *words, Text *reason)
+{
+  units_lock();
+  ut_unit *unit = explain_unit(words, reason) ? NULL : find_unit(units, words, reason);
+  units_unlock();
+  return unit;
 }
 
 bool units_count_cycles(const char *unit)
@@ -186,16 +195,10 @@ static ut_unit *unit_of(const Units *units, const Dimension *dimension, const ut
   return product;
 }
 
-Units *units_create(const char *length, const char *force, const char *time, Error *error)
+/** Reads the three units of a deck. @return whether it could */
+static bool read_base_units(Units *units, const char *const names[3], Error *error)
 {
-  Units *units = memory_plain(1, sizeof *units);
-  if (units) units->sets = memory_plain(SETS, sizeof *units->sets);
-  if (!units || !units->sets) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: units");
-    free(units);
-    return NULL;
-  }
-  const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
+  const char *const wanted[3] = {"m", "N", "s"}, *const what[3] = {"length", "force", "time"};
   bool usual = true; /* names that are not kept as a whole could not be read again in the whole system */
   for (int k = 0; k < 3; ++k) {
     usual &= strlen(names[k]) < sizeof units->name[k];
@@ -211,14 +214,13 @@ Units *units_create(const char *length, const char *force, const char *time, Err
     if (!set->system) {
       error_add(error, BRECCIA_FAILURE, "%s", text_words(&reason));
       text_free(&reason);
-      units_destroy(&units);
-      return NULL;
+      return false;
     }
   }
   static const char *const examples[3] = {"m, mm or ft", "N, kN or lbf", "s or ms"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
-    ut_unit *given = units_parse(units, names[k], &reason), *standard = unit_parse(set->system, wanted[k], UT_ASCII);
+    ut_unit *given = units_parse(units, names[k], &reason), *standard = ut_parse(set->system, wanted[k], UT_ASCII);
     if (!given)
       text_add(&reason, "; expected a unit of %s, like %s", what[k], examples[k]);
     else if (!ut_are_convertible(given, standard))
@@ -233,20 +235,35 @@ Units *units_create(const char *length, const char *force, const char *time, Err
     ut_free(given);
     ut_free(standard);
     if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", text_words(&reason));
-    int failed = reason.length > 0;
+    const bool failed = reason.length > 0;
     text_free(&reason);
-    if (failed) {
-      units_destroy(&units);
-      return NULL;
-    }
+    if (failed) return false;
   }
+  return true;
+}
+
+Units *units_create(const char *length, const char *force, const char *time, Error *error)
+{
+  Units *units = memory_plain(1, sizeof *units);
+  if (units) units->sets = memory_plain(SETS, sizeof *units->sets);
+  if (!units || !units->sets) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: units");
+    free(units);
+    return NULL;
+  }
+  units_lock();
+  const bool read = read_base_units(units, (const char *const[3]){length, force, time}, error);
+  units_unlock();
+  if (!read) units_destroy(&units);
   return units;
 }
 
 void units_destroy(Units **units)
 {
   if (!units || !*units) return;
+  units_lock();
   for (int n = 0; n < SETS; ++n) close_set(&(*units)->sets[n]);
+  units_unlock();
   free((*units)->sets);
   free(*units);
   *units = NULL;
@@ -390,7 +407,7 @@ static bool explain_weight(const Units *units, const Dimension *dimension, const
     return false;
   Text why = {0};
   ut_unit *unit = find_unit(units, given, &why),
-          *target = unit ? unit_parse(ut_get_system(unit), "N/m3", UT_ASCII) : NULL;
+          *target = unit ? ut_parse(ut_get_system(unit), "N/m3", UT_ASCII) : NULL;
   cv_converter *converter = unit && target ? ut_get_converter(unit, target) : NULL;
   if (converter)
     text_add(reason, "'%s' is a weight per volume; the density is its mass, %.5g kg/m3", words,
@@ -403,7 +420,8 @@ static bool explain_weight(const Units *units, const Dimension *dimension, const
   return explained;
 }
 
-int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
+/** Does what units_read does, in a thread that holds the lock. */
+static int read_quantity(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
 {
   char *end;
   double number = strtod(words, &end);
@@ -479,4 +497,12 @@ expected:
              strchr("aeiou", dimension->name[0]) ? "an" : "a", dimension->name, dimension->example, unit);
   }
   return 1;
+}
+
+int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
+{
+  units_lock();
+  const int status = read_quantity(units, dimension, words, value, reason);
+  units_unlock();
+  return status;
 }

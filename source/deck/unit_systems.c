@@ -8,15 +8,28 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The parser of UDUNITS-2 keeps its state in static variables, and ends the program where two threads are in it at once. */
-static pthread_mutex_t units_lock = PTHREAD_MUTEX_INITIALIZER;
+/* UDUNITS-2 keeps states of its parser and of products of units in static variables. Functions of ours that hold the lock call each other. */
+static pthread_mutex_t units_mutex;
 
-ut_unit *unit_parse(const ut_system *system, const char *words, ut_encoding encoding)
+static void units_make_mutex(void)
 {
-  pthread_mutex_lock(&units_lock);
-  ut_unit *unit = ut_parse(system, words, encoding);
-  pthread_mutex_unlock(&units_lock);
-  return unit;
+  pthread_mutexattr_t recursive;
+  pthread_mutexattr_init(&recursive);
+  pthread_mutexattr_settype(&recursive, PTHREAD_MUTEX_RECURSIVE);
+  pthread_mutex_init(&units_mutex, &recursive);
+  pthread_mutexattr_destroy(&recursive);
+}
+
+void units_lock(void)
+{
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, units_make_mutex);
+  pthread_mutex_lock(&units_mutex);
+}
+
+void units_unlock(void)
+{
+  pthread_mutex_unlock(&units_mutex);
 }
 
 /* In the order in which they are made. */
@@ -92,7 +105,7 @@ ut_system *unit_system_usual(void)
   make_base("second", "s", ut_new_base_unit(system));
   make_base("radian", "rad", ut_new_dimensionless_unit(system));
   for (size_t k = 0; k < sizeof usual / sizeof *usual; ++k) {
-    ut_unit *of = unit_parse(system, usual[k].of, UT_ASCII);
+    ut_unit *of = ut_parse(system, usual[k].of, UT_ASCII);
     if (!of || usual[k].prefix == 0) {
       map_symbol(usual[k].symbol, of);
       continue;
@@ -117,9 +130,7 @@ static int why_unopened(void)
 
 ut_system *unit_system_whole(Text *reason)
 {
-  pthread_mutex_lock(&units_lock);
   ut_system *system = ut_read_xml(NULL);
-  pthread_mutex_unlock(&units_lock);
   if (!system) {
     const int number = why_unopened();
     const bool full = number == EMFILE || number == ENFILE;
@@ -131,7 +142,7 @@ ut_system *unit_system_whole(Text *reason)
   for (size_t k = 0; k < sizeof additions / sizeof *additions; ++k) {
     ut_unit *known = ut_get_unit_by_name(system, additions[k].name);
     if (!known) {
-      ut_unit *unit = unit_parse(system, additions[k].meaning, UT_ASCII);
+      ut_unit *unit = ut_parse(system, additions[k].meaning, UT_ASCII);
       if (unit) ut_map_name_to_unit(additions[k].name, UT_ASCII, unit);
       ut_free(unit);
     }

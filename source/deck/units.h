@@ -5,8 +5,9 @@
 #include "deck/quantity.h"
 #include <udunits2.h>
 
-/** Parses a unit as ut_parse does, one thread at a time. @return to be freed with ut_free; NULL where the system has no such unit */
-ut_unit *unit_parse(const ut_system *system, const char *words, ut_encoding encoding);
+/** Lets one thread at a time into UDUNITS-2, which is not safe for threads. A thread that holds the lock may take it again. */
+void units_lock(void);
+void units_unlock(void);
 
 /** The units that most decks use. @return to be freed with ut_free_system; NULL without memory */
 ut_system *unit_system_usual(void);
