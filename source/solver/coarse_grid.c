@@ -1,5 +1,6 @@
 #include "solver/coarse_grid.h"
 
+#include "base/linear.h"
 #include "base/team.h"
 #include "solver/coarse_element.h"
 #include "solver/factors.h"
@@ -10,8 +11,9 @@
 
 enum {
   CORNERS = 8,
-  NEIGHBOURS = 14,    /* corners around a corner that are numbered no higher, itself the last */
-  MOST_CORNERS = 1500 /* that have unknowns */
+  NEIGHBOURS = 14,     /* corners around a corner that are numbered no higher, itself the last */
+  MOST_CORNERS = 1500, /* that have unknowns */
+  MOST_DENSE = 300     /* unknowns of a matrix with a dense factor: a solution by the sparse one would take longer */
 };
 #define MOST_ELEMENTS 3e7 /* in the box, with and without particles */
 
@@ -33,7 +35,9 @@ struct CoarseGrid {
   double *parts;                    /* [element_count][CORNERS * 3] */
   const double *diagonal, *turning; /* as it was prepared */
   double *stiffness;                /* [corner_count][NEIGHBOURS][9], only while equations are made */
-  Factors *factors;
+  Factors *factors;                 /* of the equations, without a dense factor */
+  double *dense;                    /* factor of at most MOST_DENSE equations; NULL: there is none */
+  int *dense_begin;                 /* [MOST_DENSE] its rows (base/linear.h) */
   /** Forces at the corners, overwritten by displacements [corner_count * axes]. */
   double *answer;
 };
@@ -177,6 +181,8 @@ void coarse_grid_destroy(CoarseGrid **grid)
   CoarseGrid *g = *grid;
   if (!g) return;
   factors_destroy(&g->factors);
+  free(g->dense);
+  free(g->dense_begin);
   free(g->answer);
   free(g->corner);
   free(g->first);
@@ -191,7 +197,9 @@ void coarse_grid_destroy(CoarseGrid **grid)
 
 size_t coarse_grid_bytes(const CoarseGrid *g)
 {
-  return factors_bytes(g->factors) + sizeof(int32_t) * (size_t)g->domain->particles->count +
+  const size_t size = (size_t)(g->corner_count * g->axes);
+  return factors_bytes(g->factors) + (g->dense ? size * (size * sizeof *g->dense + sizeof *g->dense_begin) : 0) +
+         sizeof(int32_t) * (size_t)g->domain->particles->count +
          (size_t)g->element_count * (sizeof *g->corner + CORNERS * 3 * sizeof(double)) +
          (size_t)g->corner_count * sizeof *g->touching;
 }
@@ -342,6 +350,25 @@ static void corner_matrix_fill(const CoarseGrid *g, const CornerMatrix *m)
   m->first[g->corner_count * g->axes] = count;
 }
 
+/** Makes the dense factor of a small matrix. @param[out] done  whether there is one: the matrix is small and positive definite */
+static int coarse_grid_factor_dense(CoarseGrid *g, const CornerMatrix *m, size_t size, bool *done, Error *error)
+{
+  *done = false;
+  if (size > MOST_DENSE) return BRECCIA_OK;
+  free(g->dense);
+  g->dense = memory_zeroed(size * size, sizeof *g->dense, "coarse grid", error);
+  if (!g->dense_begin) g->dense_begin = memory_zeroed(MOST_DENSE, sizeof *g->dense_begin, "coarse grid", error);
+  if (!g->dense || !g->dense_begin) return BRECCIA_FAILURE;
+  for (size_t row = 0; row < size; ++row)
+    for (int64_t n = m->first[row]; n < m->first[row + 1]; ++n)
+      g->dense[row * size + (size_t)m->column[n]] = m->value[n];
+  *done = linear_factor((int)size, g->dense, g->dense_begin);
+  if (*done) return BRECCIA_OK;
+  free(g->dense);
+  g->dense = NULL;
+  return BRECCIA_OK;
+}
+
 static int coarse_grid_factor(CoarseGrid *g, Error *error)
 {
   const size_t size = (size_t)(g->corner_count * g->axes), most = size * (size_t)(NEIGHBOURS * g->axes);
@@ -349,14 +376,16 @@ static int coarse_grid_factor(CoarseGrid *g, Error *error)
                     memory_reserved(most, sizeof *m.column, "coarse grid", error),
                     memory_reserved(most, sizeof *m.value, "coarse grid", error)};
   int status = m.first && m.column && m.value ? BRECCIA_OK : BRECCIA_FAILURE;
-  bool indefinite;
+  bool indefinite, dense = false;
   if (!g->answer) g->answer = memory_zeroed(size, sizeof *g->answer, "coarse grid", error);
   if (!g->answer) status = BRECCIA_FAILURE;
   if (!status) {
     corner_matrix_fill(g, &m);
+    status = coarse_grid_factor_dense(g, &m, size, &dense, error);
+  }
+  if (!status && !dense)
     status = factors_compute(g->factors, &(SparseMatrix){(int64_t)size, m.first, m.column, m.value}, true, &indefinite,
                              error);
-  }
   free(m.first);
   free(m.column);
   free(m.value);
@@ -495,7 +524,10 @@ void coarse_grid_correct(CoarseGrid *g, double *const f[MOTIONS], double *const 
   Transfer t = {g, f, v, NULL};
   team_each(g->element_count, gather_element, &t);
   team_each(g->corner_count, gather_corner, g);
-  if (factors_solve(g->factors, g->answer, NULL)) return;
+  if (g->dense)
+    linear_factor_solve((int)(g->corner_count * g->axes), g->dense, g->dense_begin, g->answer);
+  else if (factors_solve(g->factors, g->answer, NULL))
+    return;
   t.answer = g->answer;
   team_each(g->element_count, spread_element, &t);
 }

@@ -100,10 +100,41 @@ static void systems_are_solved_whatever_their_signs_and_order(void **state)
   }
 }
 
+static void positive_definite_matrices_have_a_factor(void **state)
+{
+  (void)state;
+  enum { MOST = 41 };
+  static double a[MOST * MOST], factor[MOST * MOST];
+  uint64_t seed = 5;
+  for (int size = 1; size <= MOST; ++size) {
+    double x[MOST], right[MOST];
+    int begin[MOST];
+    for (int row = 0; row < size; ++row) {
+      const int first = (int)(random_uniform(&seed) * (row + 1)); /* rows begin anywhere */
+      for (int column = 0; column <= row; ++column)
+        a[row * size + column] = a[column * size + row] = column < first ? 0 : random_uniform(&seed) - 0.5;
+      a[row * size + row] = size;
+      right[row] = x[row] = random_uniform(&seed) - 0.5;
+    }
+    memcpy(factor, a, sizeof a);
+    assert_true(linear_factor(size, factor, begin));
+    linear_factor_solve(size, factor, begin, x);
+    for (int row = 0; row < size; ++row) {
+      double sum = 0;
+      for (int column = 0; column < size; ++column) sum += a[row * size + column] * x[column];
+      assert_near(sum, right[row], 1e-14 * size);
+    }
+    memcpy(factor, a, sizeof a);
+    factor[size * size - 1] = -1; /* one direction is unstable */
+    assert_false(linear_factor(size, factor, begin));
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(systems_are_solved_whatever_their_signs_and_order),
+      cmocka_unit_test(positive_definite_matrices_have_a_factor),
       cmocka_unit_test(the_end_of_a_curved_valley_is_found),
       cmocka_unit_test(what_lies_outside_the_box_is_met_at_its_face),
       cmocka_unit_test(places_without_residuals_are_left_alone),
