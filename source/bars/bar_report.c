@@ -1,6 +1,7 @@
 /* What bars are like and have gone through: for histories, results and people. */
 #include "bars/bars.h"
 
+#include "body/nearer.h"
 #include "constitutive/min_max.h"
 #include <math.h>
 #include <string.h>
@@ -83,7 +84,7 @@ int64_t bar_nearest(const Bars *b, int deck_bar, const double point[3])
     double middle[3], square = 0;
     bar_middle(b, e, middle);
     for (int k = 0; k < 3; ++k) square += (middle[k] - point[k]) * (middle[k] - point[k]);
-    if (!(square < least)) continue;
+    if (!is_nearer(square, least)) continue;
     least = square;
     nearest = e;
   }

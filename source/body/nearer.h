@@ -1,4 +1,4 @@
-/* Which of two particles is nearer to a point: roundings must not decide between equals. */
+/* Which of two particles or elements is nearer to a point: round-off must not decide between equals. */
 #ifndef BRECCIA_BODY_NEARER_H
 #define BRECCIA_BODY_NEARER_H
 

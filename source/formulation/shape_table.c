@@ -18,13 +18,6 @@ static double poverty(const ShapeTensor *shape)
   return fmax(shape->demand / most_demand, shape->alone / most_alone);
 }
 
-/** In single precision, and no less: a family with the bonds that it began with must not count as poorer than it was. */
-static float round_up(double value)
-{
-  const float rounded = (float)value;
-  return rounded < value ? nextafterf(rounded, INFINITY) : rounded;
-}
-
 /** @param[in,out] whole  where shapes are found for the first time: least demand of a whole family and its neighbours seen so far
  *                         in this block, or NULL */
 static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t slice, double *whole)
@@ -43,7 +36,7 @@ static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t s
     table->mode[place] = (uint8_t)shape.mode;
     if (first_time) {
       table->roundness[place] = (float)shape.roundness;
-      table->allowed[place] = round_up(poverty(&shape));
+      table->allowed[place] = poverty(&shape);
       *whole = fmin(*whole, shape.alone * (shape.bonds + 1));
     } else {
       const double allowed = table->allowed[place], needed = poverty(&shape); /* none where no bond is left */
@@ -109,7 +102,7 @@ static int allow_faces(ShapeTable *table, const Family *family, const double *wh
   for (int64_t slice = 0; slice < p->slices; ++slice)
     least[p->block[slice]] = fmin(least[p->block[slice]], whole[slice]);
   for (int64_t place = 0; place < p->places; ++place)
-    table->allowed[place] = fmaxf(table->allowed[place], round_up(least[p->block[place / SLICE]]));
+    table->allowed[place] = fmax(table->allowed[place], least[p->block[place / SLICE]]);
   free(least);
   return BRECCIA_OK;
 }

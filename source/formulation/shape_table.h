@@ -17,7 +17,7 @@ typedef struct ShapeTable {
   int32_t *entry_of; /* [slices] */
   uint8_t *shared;   /* [entries] 1: several slices have it */
   float *roundness;  /* [places] of the families with all their bonds */
-  float *allowed;    /* [places] demand up to which a family carries its whole stress */
+  double *allowed;   /* [places] demand up to which a family carries its whole stress */
   double *kept;      /* [places] share of that which it has kept as bonds broke */
   uint8_t *mode;     /* [places] ShapeMode */
 } ShapeTable;

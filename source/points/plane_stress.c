@@ -145,6 +145,16 @@ static int fail(const Search *searches, int count, int point, double *strain_zz)
   return point;
 }
 
+/** Predicts the strains zz of a batch by linear isotropic elasticity, where sigma_zz = 0:
+ *    eps_zz = -lambda (eps_xx + eps_yy) / (lambda + 2 G),  lambda = K - 2 G / 3.
+ *  The result does not depend on earlier evaluations, whose strains zz a checkpoint need not hold.
+ *  @param[out] strain_zz  [count] */
+static void plane_stress_predict(const Material *m, const breccia_batch *batch, double *strain_zz)
+{
+  const double ratio = (m->bulk - 2 * m->shear / 3) / elastic_zz(m);
+  for (int i = 0; i < batch->count; ++i) strain_zz[i] = -ratio * (batch->strain[XX][i] + batch->strain[YY][i]);
+}
+
 /** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
  *  not end: at corners, in softening, and with tangents that are not those of whole steps; and for those where it ran away. Where nobody wants tangents
  *  the law makes them once only, as they take it as long again as stresses. */
@@ -158,7 +168,9 @@ int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_
   PackedPoints packed;
   breccia_batch now = *batch; /* the whole one, or what is left of it */
   double *zz = strain_zz;
-  now.tangent = tangent ? tangent : local;
+  const bool linear = m->law->linear;
+  if (linear || batch->elastic_stage) plane_stress_predict(m, batch, strain_zz);
+  now.tangent = tangent || linear ? tangent : local;
   for (int iteration = 0;; ++iteration) {
     const int bad = material_update(m, &now);
     int left[BATCH], count = 0;
