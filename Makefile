@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test pairs test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -90,6 +90,13 @@ check-format:
 asan:
 	@sh scripts/setup.sh test
 	@SAMPLE=$(SAMPLE) sh scripts/tests.sh asan-ubsan $(TESTS)
+
+# Every pair of levels of the factors of tests/relations/pair_decks.py; `make pairs PAIRS="--all --only WORDS"`: decks of some levels.
+pairs:
+	@sh scripts/setup.sh test
+	@cmake --preset test > /dev/null
+	@cmake --build --preset test --target breccia_command print_results --parallel $(cores)
+	@python3 -B tests/relations/pairs.py build/test/breccia build/test/tests/print_results --jobs $(cores) $(or $(PAIRS),--all)
 
 # What works on several threads, under clang's thread sanitizer. It wants addresses where it looks for them: setarch, where that is allowed.
 tsan:

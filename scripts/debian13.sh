@@ -1,7 +1,8 @@
 #!/bin/sh
 # Runs `make test` or the given command on Debian 13, in a system that mmdebstrap makes once in build/debian13-system.
 # The working tree is mounted at /breccia of that system and build/debian13 at /breccia/build, so that other builds in
-# build/ remain untouched. All mounts and processes belong to private namespaces, which end with the command.
+# build/ remain untouched. All mounts and processes belong to private namespaces, which end with the command. A second run
+# at the same time is refused, as it would replace libraries and delete temporary files of the first.
 #   debian13.sh
 #   debian13.sh ctest --preset test -R '^test_deck$'
 set -eu
@@ -28,6 +29,8 @@ mkdir -p build/debian13
 exec $root unshare --mount --pid --fork --kill-child sh -euc '
   system=$1 user=$2
   shift 2
+  exec 9< "$system/complete"
+  flock --nonblock 9 || { echo "$system: another run uses this system; wait for its end" >&2; exit 1; }
   mount --bind . "$system/breccia"
   mount --bind build/debian13 "$system/breccia/build"
   mount --rbind /dev "$system/dev"
@@ -37,7 +40,7 @@ exec $root unshare --mount --pid --fork --kill-child sh -euc '
   cp /etc/hosts /etc/resolv.conf "$system/etc"
   find "$system/tmp" -mindepth 1 -delete
   cd "$system"
-  inside="env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp TMPDIR=/tmp"
+  inside="env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp CCACHE_DIR=/breccia/build/ccache"
   $inside chroot . sh /breccia/scripts/setup.sh test
   $inside chroot --userspec="$user" . sh -c '\''cd /breccia && "$@"'\'' sh "$@"
 ' sh "$system" "$(id -u):$(id -g)" "$@"

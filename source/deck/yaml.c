@@ -74,9 +74,18 @@ static void refuse(Builder *builder, const Node *node, const char *what)
   node_error(builder->document, node, builder->error, "%s", what);
 }
 
-static void place_at(const Builder *builder, Node *node, struct fy_node *from)
+/** Returns the token of a scalar; NULL if the text has none, as for a missing value. For that, libfyaml 0.7 returns no
+ *  token, and libfyaml 0.8 an empty one. */
+static struct fy_token *yaml_written_token(struct fy_node *from)
 {
   struct fy_token *token = from ? fy_node_get_scalar_token(from) : NULL;
+  const bool empty = token && fy_node_get_style(from) == FYNS_PLAIN && !fy_token_get_text_length(token);
+  return empty ? NULL : token;
+}
+
+static void place_at(const Builder *builder, Node *node, struct fy_node *from)
+{
+  struct fy_token *token = yaml_written_token(from);
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
   if (!mark || builder->setting) return;
   node->line = mark->line + 1;
@@ -191,7 +200,7 @@ static void build_entry(Builder *builder, struct fy_node_pair *pair, Node *item,
   item->line = item->key_line = where.line;
   item->column = item->key_column = where.column;
   *merges = key && is_merge(&where, key);
-  const bool nothing = !key || (fy_node_is_scalar(key) && !fy_node_get_scalar_token(key)); /* which stands nowhere */
+  const bool nothing = !key || (fy_node_is_scalar(key) && !yaml_written_token(key)); /* which stands nowhere */
   if (where.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
   if (strstr(item->key, "${")) refuse(builder, item, "a key cannot hold an expression: ${...} stands in values");
   if (nothing) item->line = 0; /* so that a list or map finds where it stands itself */

@@ -8,6 +8,7 @@
 #include <cairo.h>
 #include <hdf5.h>
 #include <libfyaml.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <zlib.h>
 
@@ -23,14 +24,30 @@ static void build_page_lanes(Text *page)
   text_add(page, "; on this processor: %s\n", lane_names[lane_kind()]);
 }
 
-/** Adds a note on libfyaml before 0.9.1, of which one file is under the GPL. */
-static void build_page_libfyaml(Text *page)
+/** Returns true if the loaded libfyaml contains code under GPL-2.0-only: its list of Linux, which 0.9.1 has replaced. */
+static bool build_page_fyaml_is_gpl(void)
 {
   int major = 0, minor = 0, patch = 0;
   sscanf(fy_library_version(), "%d.%d.%d", &major, &minor, &patch);
-  if (major == 0 && (minor < 9 || (minor == 9 && patch < 1)))
-    text_add(page, "note: libfyaml before 0.9.1 has one file under the GNU licence; mind it if you pass libfyaml on "
-                   "(LICENSES.md)\n");
+  return major == 0 && (minor < 9 || (minor == 9 && patch < 1));
+}
+
+/** Adds the licence of the binary alone and together with its libraries. LICENSES.md has the reasons. */
+static void build_page_licence(Text *page)
+{
+#ifdef BRECCIA_SUITESPARSE
+  text_add(page,
+           "licence: GPL-2.0-or-later for this binary as a whole, because of CHOLMOD and UMFPACK; BSD-3-Clause for "
+           "Breccia (LICENSES.md)\n");
+#else
+  text_add(page, "licence: BSD-3-Clause for this binary; its libraries keep their own licences%s (LICENSES.md)\n",
+           build_page_fyaml_is_gpl() ? "" : ", of which none extends to it");
+#endif
+  if (build_page_fyaml_is_gpl())
+    text_add(page,
+             "licence with libfyaml %s: GPL-2.0-only for the whole if this libfyaml is passed on with the binary; "
+             "libfyaml 0.9.1 and later contain no such code (LICENSES.md)\n",
+             fy_library_version());
 }
 
 static void build_page_libraries(Text *page)
@@ -48,14 +65,5 @@ void build_page_add(Text *page)
   text_add(page, "breccia %s\ncommit: %s\n", BRECCIA_VERSION, BUILD_COMMIT);
   build_page_lanes(page);
   build_page_libraries(page);
-#ifdef BRECCIA_SUITESPARSE
-  text_add(page,
-           "licence: GPL-2.0-or-later for this binary as a whole, because of CHOLMOD and UMFPACK; BSD-3-Clause for "
-           "Breccia (LICENSES.md)\n");
-#else
-  text_add(page,
-           "licence: BSD-3-Clause for this binary; its libraries keep their own licences, of which none extends to "
-           "it (LICENSES.md)\n");
-#endif
-  build_page_libfyaml(page);
+  build_page_licence(page);
 }
