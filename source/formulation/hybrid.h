@@ -170,6 +170,7 @@ typedef struct HybridRow {
   int64_t listed;             /* number, or -1: its geometry is in the table */
   int32_t geometry;           /* or -1: there was never a bond */
   int lane;
+  bool second; /* of the material of the other end, where that of the owner has a row of its own */
 } HybridRow;
 
 /** A row with what its strain is made of, wherever that is kept. */
@@ -225,9 +226,8 @@ bool hybrid_is_beyond(const Hybrid *h, int64_t place, int64_t other);
 
 /** K^-1 of all places by the weights of areas; 0 where a family of images or of another formulation is flat. */
 typedef double HybridShape[6];
-/** Section of the bond of a lane, as the body begins. */
-void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
-                       double *volume);
+/** Section of the bond of a row, as the body begins, and the volume for which the row stands. */
+void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRow *at, double area[3], double *volume);
 /** Vectors of members from their distances from the middle, each times its weight, and the moment of these distances: the fit, and what the bond itself
  *  says, made exact along it: g - own (g . xi) xi / L^2, and own xi / L^2 of its two ends, which come first.
  *  @param[in,out] g  [count]. @return false where the members span no space */

@@ -57,6 +57,26 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
   return true;
 }
 
+static double hybrid_young(const Hybrid *h, int64_t place)
+{
+  return material_young(&h->materials[h->material[place / SLICE]]);
+}
+
+/** Share of a bond's volume that the material at one of its ends has: the parts of a bond of two materials stand in series. */
+static double hybrid_softer_share(const Hybrid *h, int64_t place, int64_t other)
+{
+  const double own = hybrid_young(h, place), both = own + hybrid_young(h, other);
+  return both > 0 ? 1 - own / both : 0.5;
+}
+
+/** Weight in the fit of a member of another material than both ends of the bond: strains jump where materials meet, the more the less alike they are
+ *  (docs/theory.md 5.3). */
+static double hybrid_alike(const Hybrid *h, const int32_t *member, int n)
+{
+  const double own = hybrid_young(h, member[0]), there = hybrid_young(h, member[n]);
+  return own + there > 0 && own == hybrid_young(h, member[1]) ? 2 * fmin(own, there) / (own + there) : 1;
+}
+
 /** Vectors g of the members of a listed row by the bonds that are intact now. @return false: there is none, and the point carries nothing */
 static bool weigh(const Hybrid *h, int64_t number, double (*g)[3])
 {
@@ -68,7 +88,7 @@ static bool weigh(const Hybrid *h, int64_t number, double (*g)[3])
   double middle[3] = {0}, whole = 0, m[6] = {0}, xi[3];
   for (int n = 0; n < count; ++n) {
     if (!sees(h, member[n], member[0]) || !sees(h, member[n], member[1])) continue;
-    const double volume = p->volume[member[n]];
+    const double volume = p->volume[member[n]] * hybrid_alike(h, member, n);
     whole += volume;
     for (int k = 0; k < 3; ++k) {
       g[n][k] = p->position[k][member[n]] - p->position[k][member[0]];
@@ -81,7 +101,7 @@ static bool weigh(const Hybrid *h, int64_t number, double (*g)[3])
   }
   for (int n = 0; n < count; ++n) {
     const bool present = !n || g[n][0] != 0 || g[n][1] != 0 || g[n][2] != 0; /* the others stand elsewhere */
-    const double volume = present ? p->volume[member[n]] : 0;
+    const double volume = present ? p->volume[member[n]] * hybrid_alike(h, member, n) : 0;
     double from[3];
     for (int k = 0; k < 3; ++k) from[k] = g[n][k] - middle[k];
     for (int k = 0; k < 6; ++k) m[k] += volume * from[symmetric_row[k]] * from[symmetric_column[k]];
@@ -318,14 +338,16 @@ bool hybrid_is_beyond(const Hybrid *h, int64_t place, int64_t other)
 
 /* Section a = w V (K_A^-1 + K_B^-1) xi / L and volume a . xi / d of each bond: the volumes add up to that of the body, and a uniform stress passes
  * through it exactly, whatever its shape (docs/theory.md 5.3). */
-void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
-                       double *volume)
+void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRow *at, double area[3], double *volume)
 {
-  const int64_t owner = slice * SLICE + lane;
-  const Bond bond = family_bond(h->family, slice, slot, lane);
+  const int64_t owner = at->slice * SLICE + at->lane;
+  const Bond bond = family_bond(h->family, at->slice, at->slot, at->lane);
   int64_t rows[2];
-  bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  const double share = rows[0] == rows[1] && !is_foreign(h->foreign, bond.neighbour) ? 1 : 0.5;
+  bond_list_rows(h->bonds, h->family, at->slice, at->slot, at->lane, rows);
+  const double share = is_foreign(h->foreign, bond.neighbour) ? 0.5
+                       : rows[0] == rows[1]                   ? 1
+                       : at->second                           ? hybrid_softer_share(h, bond.neighbour, owner)
+                                                              : hybrid_softer_share(h, owner, bond.neighbour);
   double own[3], their[3];
   times(shape[owner][XX] > 0 ? shape[owner] : shape[bond.neighbour], bond.xi, own);
   times(shape[bond.neighbour][XX] > 0 ? shape[bond.neighbour] : shape[owner], bond.xi, their);
@@ -346,7 +368,7 @@ static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
     const HybridRow at = hybrid_row(h, h->row[number]);
     h->idle[number] = !(h->family->intact[at.slot] >> at.lane & 1);
     if (h->idle[number]) continue;
-    hybrid_section_of(h, shape, at.slice, at.slot, at.lane, h->area[number], &h->volume[number]);
+    hybrid_section_of(h, shape, &at, h->area[number], &h->volume[number]);
     if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number])) continue;
     h->idle[number] = 1; /* also where influence ends at the horizon */
     const int64_t owner = at.slice * SLICE + at.lane;

@@ -7,7 +7,7 @@ static HybridRow row_of(const Hybrid *h, int64_t slice, int64_t row)
 {
   const BondList *l = h->bonds;
   HybridRow at = {.slice = slice, .group = -1, .listed = -1, .geometry = -1};
-  bond_list_bond(l, h->family, at.slice, row, &at.slot, &at.lane);
+  at.second = bond_list_bond(l, h->family, at.slice, row, &at.slot, &at.lane);
   const int64_t n = row - l->first[at.slice], owned = l->owned_first[at.slice + 1] - l->owned_first[at.slice];
   if (n >= SLICE * owned) {
     at.listed = l->single_first[at.slice] + n - SLICE * owned;

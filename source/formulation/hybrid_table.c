@@ -540,7 +540,7 @@ int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int6
     geometry[lane] = NO_BOND;
     if (!(h->family->intact[slot] >> lane & 1)) continue;
     double area[3], volume;
-    hybrid_section_of(h, shape, slice, slot, lane, area, &volume);
+    hybrid_section_of(h, shape, &(HybridRow){.slice = slice, .slot = slot, .lane = lane}, area, &volume);
     take_lane(&m, count, key, lanes, lane);
     if (volume == 0) m.count = 0; /* influence may end at the horizon */
     geometry[lane] = look_up(h, &m, area, volume);
