@@ -590,7 +590,8 @@ static void a_strain_that_is_no_number_is_reported(void **state)
 }
 
 /** Strains far beyond any strength, of one point and of so many that lanes are left over: Hooke's law, and its tangent. */
-/** An elastic stage does not age a viscoelastic law: the strain that it leaves counts as grown in the first step after it. */
+/** An elastic stage does not age a viscoelastic law: the strain at its end counts as grown in the first step after
+ *  it. */
 static void a_viscoelastic_law_relaxes_from_an_elastic_stage_on(void **state)
 {
   (void)state;

@@ -487,7 +487,8 @@ static void control_does_not_fade_where_stress_was_there_before_strain(void **st
   breccia_model_destroy(&m);
 }
 
-/** Concrete under its weight keeps all of its zero-energy control at every depth: rows along x, and so batches, lie at several depths. */
+/** Concrete under its weight keeps all of its zero-energy control at every depth. Rows along x, and so batches of
+ *  particles, lie at several depths. */
 static void control_does_not_fade_under_stress_that_grows_with_depth(void **state)
 {
   (void)state;

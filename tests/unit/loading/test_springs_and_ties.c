@@ -110,7 +110,7 @@ static void tied_bodies_move_as_one_and_keep_their_momentum(void **state)
   }
 }
 
-/** Tied bodies of two densities that a force pushes from rest: implicit steps find the constant acceleration of their mass. */
+/** Implicit steps find the constant acceleration of tied bodies of two densities that a force pushes from rest. */
 static void unlike_tied_bodies_are_pushed_by_the_mass_of_both(void **state)
 {
   (void)state;
@@ -161,8 +161,8 @@ static void a_tie_that_leads_out_of_the_plane_is_refused(void **state)
   free(words);
 }
 
-/** Two blocks of unlike size at rest on one spring between them: from where they stand when it begins, the spring is longer by the force over its
- *  stiffness. */
+/** A spring between two blocks of unlike size at rest is longer by the force over its stiffness than when it
+ *  began. */
 static void a_spring_between_blocks_at_rest_is_stretched_by_its_force(void **state)
 {
   (void)state;

@@ -393,8 +393,8 @@ static void assert_no_gaps(double spacing, double deformed)
   result_view_close(&view);
 }
 
-/** Particles are drawn with the part of the plane that belongs to them, which turns and grows with its neighbours: by 63 degrees and 2.2 times, or by
- *  76 degrees and 4.1 times, in any unit of length. */
+/** Particles are drawn with the part of the plane that belongs to them, which turns and grows with its neighbours:
+ *  by 63 degrees and 2.2 times, or by 76 degrees and 4.1 times, in any unit of length. */
 static void bodies_that_turn_and_grow_have_no_gaps(void **state)
 {
   (void)state;
