@@ -55,7 +55,10 @@ static void lines_stand_at_the_pitch(void **state)
     assert_int_equal(deck_bar_lines(b, 0), cases[k].lines);
     for (int n = 0; n < b->specs->count; ++n)
       for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
+        double middle[3];
+        bar_middle(b, e, middle);
         assert_int_equal(bar_of(b, e), n);
+        assert_int_equal(bar_nearest(b, 0, middle), e);
         length += b->length[e];
         for (int end = 0; end < 2; ++end) {
           assert_near(b->node[e + n + end][0], 0.05 + cases[k].at[n], 1e-14);

@@ -253,6 +253,22 @@ static void slip_that_goes_back_meets_friction(void **state)
   assert_true(spent > 10 * root * mm);
 }
 
+/** Slips of opposite sign meet stresses of opposite sign, whatever their path. */
+static void slip_of_the_other_sign_meets_the_same_stress(void **state)
+{
+  (void)state;
+  const BondLaw law = law_of(FIB);
+  const double root = sqrt(30) * 1e3, mm = 1e-3;
+  BondState forth = {0}, back = {0};
+  uint64_t seed = 7;
+  for (int turn = 0; turn < 20; ++turn) {
+    const double slip = (0.2 + 0.1 * turn) * mm * (random_uniform(&seed) - 0.5);
+    lead(&law, &forth, slip);
+    lead(&law, &back, -slip);
+    assert_near(back.stress, -forth.stress, 1e-9 * root);
+  }
+}
+
 /* ---- forces on the concrete ---- */
 
 static const char *const bonds[] = {"bond: {law: linear, stiffness: 1e6}", "bond: {" FIB "}, anchored: [start]",
@@ -543,6 +559,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bond_follows_the_table_of_the_code),
       cmocka_unit_test(slip_that_goes_back_meets_friction),
+      cmocka_unit_test(slip_of_the_other_sign_meets_the_same_stress),
       cmocka_unit_test(slip_along_a_free_bar_is_that_of_the_closed_form),
       cmocka_unit_test(a_bar_is_pulled_out_as_by_the_closed_form),
       cmocka_unit_test(a_short_bar_bears_the_bond_stress_of_its_surface),

@@ -194,6 +194,29 @@ static void layers_of_faces_are_counted_alike_on_all_sides(void **state)
       }
 }
 
+/** A face that two blocks of unlike spacing share has layers of both spacings. */
+static void layers_of_a_face_are_those_of_each_block(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      MATERIAL SOLVE "peridynamics: {space: 3-D}\n"
+                     "body:\n  coarse: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [6, 4, 4]}}}\n"
+                     "  fine: {material: m, spacing: 0.5, shape: {box: {from: [0, 4, 0], to: [6, 6, 4]}}}\n"
+                     "loads: [{on: {face: x-, layers: 2}, body force: [1, 0, 0]}]\n");
+  const Particles *p = model->domain.particles;
+  const Selection *selection = &model->loading.loads[0].selection;
+  int64_t counts[2] = {0};
+  for (int64_t n = 0; n < selection->count; ++n) {
+    const int32_t i = selection->places[n];
+    const int block = p->block[i / SLICE];
+    ++counts[block];
+    assert_true(p->position[0][i] < (block ? 1 : 2));
+  }
+  assert_int_equal(counts[0], 4 * 4 * 2);
+  assert_int_equal(counts[1], 4 * 8 * 2);
+  breccia_model_destroy(&model);
+}
+
 static void particles_on_the_face_of_a_hole_stay(void **state)
 {
   (void)state;
@@ -563,6 +586,7 @@ int main(void)
       cmocka_unit_test(shapes_have_the_volumes_of_geometry),
       cmocka_unit_test(shapes_hold_points_up_to_their_faces),
       cmocka_unit_test(layers_of_faces_are_counted_alike_on_all_sides),
+      cmocka_unit_test(layers_of_a_face_are_those_of_each_block),
       cmocka_unit_test(particles_on_the_face_of_a_hole_stay),
       cmocka_unit_test(numbers_run_along_x_then_y_then_z),
       cmocka_unit_test(families_on_lattices_have_the_counts_of_geometry),

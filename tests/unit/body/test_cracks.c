@@ -176,8 +176,10 @@ static void a_notch_whose_end_is_a_row_of_taken_particles_cuts_the_bonds_across_
   breccia_model *model =
       model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.015}\n"
                               "cracks: [{remove: {box: {from: [3.5, -9, -9], to: [4.5, 3, 9]}}, cut faces: yes}]\n"
-                              "body: {b: {material: m, spacing: 1, shape: {box: {particles: [9, 9, 2], first "
-                              "particle: [0, 0, 0]}}}}\n");
+                              "body:\n  far: {material: m, spacing: 1, shape: {box: {particles: [2, 2, 2], first "
+                              "particle: [20.5, 0.5, 0.5]}}}\n" /* without a row at the end of the notch */
+                              "  b: {material: m, spacing: 1, shape: {box: {particles: [9, 9, 2], first "
+                              "particle: [0, 0, 0]}}}\n");
   const Body *body = &model->domain.body;
   assert_true(body_cuts(body, (double[]){3, 3, 0}, (double[]){5, 3, 0}));
   assert_true(!body_cuts(body, (double[]){3, 4, 0}, (double[]){5, 4, 0}));

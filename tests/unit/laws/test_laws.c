@@ -590,6 +590,31 @@ static void a_strain_that_is_no_number_is_reported(void **state)
 }
 
 /** Strains far beyond any strength, of one point and of so many that lanes are left over: Hooke's law, and its tangent. */
+/** An elastic stage does not age a viscoelastic law: the strain at its end counts as grown in the first step after
+ *  it. */
+static void a_viscoelastic_law_relaxes_from_an_elastic_stage_on(void **state)
+{
+  (void)state;
+  Material m = material_of("viscoelastic", "Young modulus=1000", "Poisson ratio=0.25", "relaxing share=0.4",
+                           "relaxation time=2", NULL);
+  double strain[6] = {0, 0, 0, 1e-3, 0, 0}, stress[6] = {0}, histories[2][32] = {{0}};
+  assert_true(m.history_values <= 32);
+  breccia_batch batch = {.size = sizeof batch, .count = 1, .time_step = 0.5};
+  for (int k = 0; k < 6; ++k) {
+    batch.strain[k] = &strain[k];
+    batch.stress[k] = &stress[k];
+  }
+  for (int step = 0; step < 3; ++step) {
+    batch.elastic_stage = step < 2;
+    batch.committed = histories[step % 2];
+    batch.trial = histories[(step + 1) % 2];
+    assert_int_equal(m.law->update(m.constants, &batch), -1);
+    const double x = 0.5 / 2, late = 1 - (1 - exp(-x)) / x;
+    assert_near(stress[3], m.shear * 1e-3 * (step < 2 ? 1 : 1 - 0.4 * late), 1e-12);
+  }
+  material_destroy(&m);
+}
+
 static void the_elastic_stage_is_elastic(void **state)
 {
   (void)state;
@@ -723,6 +748,7 @@ int main(void)
       cmocka_unit_test(plane_stress_hands_over_lengths_and_twins),
       cmocka_unit_test(plane_stress_holds_where_cracks_stand_open),
       cmocka_unit_test(a_strain_that_is_no_number_is_reported),
+      cmocka_unit_test(a_viscoelastic_law_relaxes_from_an_elastic_stage_on),
       cmocka_unit_test(the_elastic_stage_is_elastic),
       cmocka_unit_test(laws_tell_what_they_remember),
   };

@@ -217,6 +217,29 @@ static void a_body_is_braked_by_its_faces(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Two bodies of unlike density on dashpots of their own density: rho c A / mass is c / length for both. */
+static void each_material_of_a_face_has_its_own_impedance(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of("units: {length: m, force: kN, time: s}\n"
+               "materials:\n  light: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+               "  heavy: {model: elastic, density: 6, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+               "body:\n  a: {material: light, spacing: 0.1, shape: {box: {particles: [5, 4, 4]}}}\n"
+               "  b: {material: heavy, spacing: 0.1, shape: {box: {particles: [5, 4, 4], first particle: "
+               "[0, 2, 0]}}}\n"
+               "loads:\n  - {on: {face: x-}, dashpots: {shear wave speed: 0, compression wave speed: 1.5}}\n"
+               "  - {initial velocity: {translation: [0.5, 0, 0]}}\n"
+               "solve: {explicit: {end time: 0.2}}\n");
+  const Particles *p = m->domain.particles;
+  step_surely(m, INT64_MAX);
+  double mean[2] = {0};
+  for (int64_t n = 0; n < p->count; ++n) mean[p->block[p->place_of[n] / SLICE]] += p->velocity[0][p->place_of[n]] / 80;
+  for (int block = 0; block < 2; ++block) assert_near(mean[block], 0.5 * exp(-1.5 / 0.5 * 0.2), 0.01 * 0.5);
+  assert_balanced(m, 1e-7);
+  breccia_model_destroy(&m);
+}
+
 static void wrong_dashpots_are_refused(void **state)
 {
   (void)state;
@@ -250,6 +273,7 @@ int main(void)
       cmocka_unit_test(soil_on_rigid_rock_has_the_frequencies_of_a_layer),
       cmocka_unit_test(dashpots_do_nothing_at_rest),
       cmocka_unit_test(a_body_is_braked_by_its_faces),
+      cmocka_unit_test(each_material_of_a_face_has_its_own_impedance),
       cmocka_unit_test(wrong_dashpots_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

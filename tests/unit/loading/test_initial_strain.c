@@ -107,6 +107,40 @@ static void a_free_body_takes_it_without_stress(void **state)
   }
 }
 
+/** Forces of a held plate that is warm in one half are mirrored where the other half is. */
+static void either_half_may_be_warm(void **state)
+{
+  (void)state;
+  for (int n = 0; n < CASES; ++n) {
+    breccia_model *sides[2];
+    for (int right = 0; right < 2; ++right) {
+      char loads[300];
+      snprintf(loads, sizeof loads, "%s, {on: {inside: {box: {from: [%g, -1], to: [%g, 9]}}}, initial strain: 2e-3}",
+               all_held(1), right ? 0.45 : -1, right ? 9 : 0.45);
+      sides[right] = model_of(
+          UNITS
+          "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
+          "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: {box: {particles: [10, 6], "
+          "first particle: [0, 0]}}}}\n"
+          "peridynamics: {%s, space: plane strain, horizon: %s}\nloads: [%s]\nsolve: {explicit: {steps: 1}}\n",
+          cases[n].law, cases[n].formulation,
+          strstr(cases[n].formulation, "micropolar") ? "1.5 spacings" : "2.015 spacings", loads);
+      step_surely(sides[right], 1);
+    }
+    const Particles *p = sides[0]->domain.particles, *q = sides[1]->domain.particles;
+    double largest = 0;
+    for (int64_t k = 0; k < p->count; ++k) largest = larger_of(largest, fabs(p->internal[0][p->place_of[k]]));
+    assert_true(largest > 1);
+    for (int64_t k = 0; k < p->count; ++k) {
+      const int32_t i = p->place_of[k],
+                    j = particles_nearest(q, (double[]){0.9 - p->position[0][i], p->position[1][i], 0});
+      assert_near(p->internal[0][i], -q->internal[0][j], 1e-9 * largest);
+      assert_near(p->internal[1][i], q->internal[1][j], 1e-9 * largest);
+    }
+    for (int right = 0; right < 2; ++right) breccia_model_destroy(&sides[right]);
+  }
+}
+
 static void a_held_body_carries_what_the_closed_form_says(void **state)
 {
   (void)state;
@@ -408,6 +442,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_free_body_takes_it_without_stress),
+      cmocka_unit_test(either_half_may_be_warm),
       cmocka_unit_test(a_held_body_carries_what_the_closed_form_says),
       cmocka_unit_test(a_bar_held_at_both_ends_pulls_with_e_times_its_shrinkage),
       cmocka_unit_test(laws_see_the_strain_without_it),

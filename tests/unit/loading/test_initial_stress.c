@@ -84,6 +84,28 @@ static void a_body_held_on_all_sides_keeps_any_stress(void **state)
   }
 }
 
+/** Blocks of unlike stiffness begin under the same stress, each at the strain of its own compliance. */
+static void unlike_blocks_begin_under_one_stress(void **state)
+{
+  (void)state;
+  const double stress[6] = {-300, -200, 150, 40, -30, 20};
+  breccia_model *m = model_of(
+      UNITS
+      "materials:\n  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+      "  n: {model: elastic, density: 2, Young modulus: 4e4, Poisson ratio: 0.25}\n"
+      "body:\n  up: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [0, 0, 0]}}}\n"
+      "  down: {material: n, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [0, 0, -0.4]}}}\n"
+      "initial stress: {stress: [-300, -200, 150, 40, -30, 20]}\nsolve: {explicit: {steps: 1}}\n");
+  assert_stress(m, stress, 1e-8);
+  const Domain *d = &m->domain;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    const int32_t i = d->particles->place_of[n];
+    const double young = d->particles->position[2][i] > -0.05 ? 1e4 : 4e4;
+    assert_near(d->initial_strain[XY][i], 40 / (young / 2.5), 1e-9);
+  }
+  breccia_model_destroy(&m);
+}
+
 static void a_face_that_slides_takes_pressure_and_no_shear(void **state)
 {
   (void)state;
@@ -465,6 +487,26 @@ static void control_does_not_fade_where_stress_was_there_before_strain(void **st
   breccia_model_destroy(&m);
 }
 
+/** Concrete under its weight keeps all of its zero-energy control at every depth. Rows along x, and so batches of
+ *  particles, lie at several depths. */
+static void control_does_not_fade_under_stress_that_grows_with_depth(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: mazars, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, tensile strength: 30, "
+      "fracture energy: 0.1}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [60, 12]}}}}\n"
+      "peridynamics: {space: plane strain, formulation: correspondence}\n"
+      "initial stress: {surface: 1.2, K0: 0.33333333}\n"
+      "loads: [{gravity: [0, -10]}, " SIDES "]\nsolve: {static: {increments: 2}}\n");
+  assert_true(m->domain.batch_count > 1);
+  run_all(m);
+  const Region *region = &m->domain.regions[0];
+  assert_false(region->type->lags(region->formulation));
+  breccia_model_destroy(&m);
+}
+
 /* ---- what is refused ---- */
 
 #define GROUND ELASTIC PLATE "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
@@ -534,6 +576,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_body_held_on_all_sides_keeps_any_stress),
+      cmocka_unit_test(unlike_blocks_begin_under_one_stress),
       cmocka_unit_test(a_face_that_slides_takes_pressure_and_no_shear),
       cmocka_unit_test(a_body_let_go_springs_by_its_compliance),
       cmocka_unit_test(a_plane_body_springs_in_its_plane),
@@ -548,6 +591,7 @@ int main(void)
       cmocka_unit_test(damage_of_the_stress_at_the_start_stays),
       cmocka_unit_test(clay_begins_as_after_an_elastic_stage),
       cmocka_unit_test(control_does_not_fade_where_stress_was_there_before_strain),
+      cmocka_unit_test(control_does_not_fade_under_stress_that_grows_with_depth),
       cmocka_unit_test(what_cannot_be_meant_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -226,6 +226,25 @@ static void a_body_is_thrown_and_spins_as_said(void **state)
   breccia_model_destroy(&about);
 }
 
+/** A body of two densities that begins to turn about its centre of mass has no momentum. */
+static void a_body_spins_about_its_centre_of_mass(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(UNITS "materials:\n"
+                     "  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+                     "  n: {model: elastic, density: 6, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+                     "body:\n  b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 3, 3]}}}\n"
+                     "  c: {material: n, spacing: 0.1, shape: {box: {particles: [2, 3, 3], first particle: "
+                     "[0.4, 0, 0]}}}\n"
+                     "loads: [{initial velocity: {rotation: [0, 0, 3]}}]\nsolve: {explicit: {steps: 1}}\n");
+  run_all(m);
+  const Sums s = sums_of(m);
+  assert_true(s.turn[2] > 0.01 * s.mass);
+  for (int k = 0; k < 3; ++k) assert_near(s.momentum[k], 0, 1e-12 * s.mass);
+  breccia_model_destroy(&m);
+}
+
 #define STRIP(nx)                                                                                                      \
   UNITS                                                                                                                \
   "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"                            \
@@ -558,6 +577,7 @@ int main(void)
       cmocka_unit_test(the_ground_moves_as_seen_from_itself),
       cmocka_unit_test(on_inclined_rollers_a_body_slides_without_friction),
       cmocka_unit_test(a_body_is_thrown_and_spins_as_said),
+      cmocka_unit_test(a_body_spins_about_its_centre_of_mass),
       cmocka_unit_test(half_a_body_on_a_support_across_is_half_a_whole),
       cmocka_unit_test(cracks_go_on_in_images),
       cmocka_unit_test(stresses_are_right_up_to_a_support),

@@ -267,6 +267,37 @@ static void particles_turn_like_their_cells(void **state)
     }
 }
 
+/** Blocks of particles from files turn like cells of their own mean size. */
+static void blocks_from_files_have_cells_of_their_own(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"test_micropolar_one.csv", "test_micropolar_two.csv"};
+  const double volumes[] = {3e-3, 0.75e-3};
+  for (int b = 0; b < 2; ++b) {
+    FILE *table = fopen(names[b], "w");
+    assert_non_null(table);
+    fputs("x,y,volume\n", table);
+    for (int n = 0; n < 16; ++n)
+      fprintf(table, "%g,%g,%g\n", 5 * b + sqrt(volumes[b] / 0.3) * (n % 4), sqrt(volumes[b] / 0.3) * (n / 4),
+              volumes[b]);
+    fclose(table);
+  }
+  breccia_model *model =
+      model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+               "body:\n  one: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, file: %s}\n"
+               "  two: {material: m, lattice: square, spacing: 0.05, thickness: 0.3, file: %s}\n"
+               "peridynamics: {formulation: micropolar, space: plane strain, horizon: 0.21}\n"
+               "solve: {explicit: {steps: 1}}\n",
+               names[0], names[1]);
+  const Region *region = &model->domain.regions[0];
+  for (int b = 0; b < 2; ++b) {
+    const int32_t place = model->domain.particles->place_of[16 * b + 5];
+    assert_near(region->type->gyration(region->formulation, place), volumes[b] / 0.3 / 6, 1e-12);
+    unlink(names[b]);
+  }
+  breccia_model_destroy(&model);
+}
+
 static void torsion_is_a_share_of_that_of_round_beams(void **state)
 {
   (void)state;
@@ -309,6 +340,7 @@ int main(void)
       cmocka_unit_test(check_tells_axial_and_bending_stiffness_of_links),
       cmocka_unit_test(check_tells_how_unlike_the_directions_are),
       cmocka_unit_test(particles_turn_like_their_cells),
+      cmocka_unit_test(blocks_from_files_have_cells_of_their_own),
       cmocka_unit_test(torsion_is_a_share_of_that_of_round_beams),
       cmocka_unit_test(lattices_have_the_rows_of_the_thesis),
   };

@@ -202,6 +202,35 @@ static void survey_field(const ResultView *view, const char *name, double *least
 
 /** A layer whose strain along z goes from tension at its foot to the same compression at its top: its mean stresses are of both signs, and no two
  *  layers of particles have the same. */
+/** Arrays that a program asks for by name hold the strain and stress of the particles as they stand. */
+static void arrays_by_name_are_those_of_now(void **state)
+{
+  (void)state;
+  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  for (int of = 0; of < 2; ++of) { /* what is asked for first brings both up to date */
+    breccia_model *m = body("loads: [{on: {face: x+}, traction: [0.5, 0.2, 0.1]}]\n");
+    const Particles *p = m->domain.particles;
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      for (int k = 0; k < 3; ++k) p->displacement[k][i] = 1e-3 * p->position[0][i] * (k + 1);
+    }
+    for (int k = 0; k < 6; ++k) {
+      char name[16];
+      snprintf(name, sizeof name, "%s %s", of ? "stress" : "strain", parts[k]);
+      const double *values = breccia_model_array(m, name);
+      assert_non_null(values);
+      for (int64_t n = 0; n < p->count; ++n) {
+        double look[2][6];
+        domain_look(&m->domain, p->place_of[n], look[0], look[1]);
+        assert_near(values[p->place_of[n]], look[of][k], 1e-9);
+      }
+    }
+    const double *stress = breccia_model_array(m, "stress xx");
+    assert_near(stress[p->place_of[p->count / 2]], 12e-3, 1e-4); /* (lambda + 2 G) e */
+    breccia_model_destroy(&m);
+  }
+}
+
 static void the_peaks_of_a_summary_are_extremes_over_all_particles(void **state)
 {
   (void)state;
@@ -568,6 +597,7 @@ int main(void)
       cmocka_unit_test(a_run_taken_up_again_tells_what_one_without_a_stop_does),
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
+      cmocka_unit_test(arrays_by_name_are_those_of_now),
       cmocka_unit_test(the_peaks_of_a_summary_are_extremes_over_all_particles),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
       cmocka_unit_test(a_ball_is_lit_from_above_and_from_the_left),
