@@ -437,7 +437,7 @@ static breccia_model *notched_pair(const char *law, const char *keys, int layers
             "  b: {material: n, %s, shape: {box: {from: [0.005, 0.11%s], to: [0.095, 0.16%s]}}}\n"
             "cracks: [{cut: {%s}}]\n"
             "peridynamics: {formulation: hybrid, %s}\n"
-            "failure: {critical stretch: 2e-4, near grips: hold}\n"
+            "failure: {critical stretch: 2.05e-4, near grips: hold}\n"
             "loads: [{on: {face: y+, layers: 2}, velocity: [free, 0.1], history: {ramp to: 20e-6}},\n"
             "        {on: {face: y-, layers: 2}, velocity: [free, -0.1], history: {ramp to: 20e-6}}]\n"
             "solve: {explicit: {end time: 4e-4%s}}\n",
