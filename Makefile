@@ -67,7 +67,8 @@ bench-rest: all
 bench-bars: all
 	@build/release/breccia_bench_bars
 
-# Notched strips opened by a wedge, by formulation, law or criterion, direction and horizon; a table of docs/choosing.md; an hour.
+# Notched strips opened by a wedge, by formulation, law or criterion and direction; a table of docs/choosing.md; some minutes. ROWS=all: all lattices, horizons and directions,
+# hours; ROWS="hybrid 45": rows with these words, printed.
 bench-toughness: all
 	@python3 -B bench/toughness.py build/release/breccia docs/choosing.md $(ROWS)
 
