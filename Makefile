@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test pairs test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test pairs test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-toughness bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -66,6 +66,11 @@ bench-rest: all
 # Bars pulled apart by every formulation and softening law, beside their fracture energy; a quarter of an hour.
 bench-bars: all
 	@build/release/breccia_bench_bars
+
+# Notched strips opened by a wedge, by formulation, law or criterion and direction; a table of docs/choosing.md; some minutes. ROWS=all: all lattices, horizons and directions,
+# hours; ROWS="hybrid 45": rows with these words, printed.
+bench-toughness: all
+	@python3 -B bench/toughness.py build/release/breccia docs/choosing.md $(ROWS)
 
 # Elastic bodies at rest beside finite elements of OpenSees; a table of docs/performance.md.
 bench-elements: all

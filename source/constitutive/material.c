@@ -180,6 +180,7 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
 {
   *material = (Material){
       .name = law->name, .law = law, .law_name = law->name, .constants = memory_plain(1, law->constants_size + 1)};
+  material->fracture_energy = material->length = NAN;
   if (!material->constants) {
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
@@ -201,11 +202,11 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   return status;
 }
 
-/** Which parameter of a law is the length over which a fracture energy is spread, or -1. */
-static int length_parameter(const breccia_law *law)
+/** Returns the index of a parameter of a law, or -1. */
+static int material_parameter(const breccia_law *law, const char *name)
 {
   for (int k = 0; k < law->parameter_count; ++k)
-    if (!strcmp(law->parameters[k].name, "length")) return k;
+    if (!strcmp(law->parameters[k].name, name)) return k;
   return -1;
 }
 
@@ -284,13 +285,18 @@ int material_create(Material *material, const DeckReader *reader, const Material
 {
   material->name = spec->head.name;
   material->density = spec->density;
+  material->fracture_energy = material->length = NAN;
   if (!spec->model) return create_remote(material, reader, spec, length);
   char reason[512] = "";
   const breccia_law *law = law_find(reader->context, spec->model);
-  int at = length_parameter(law);
-  if (at >= 0 && isnan(spec->values[at])) spec->values[at] = length;
+  const int at = material_parameter(law, "length"), energy = material_parameter(law, "fracture energy");
+  const bool given = at >= 0 && !isnan(spec->values[at]);
+  if (at >= 0 && !given) spec->values[at] = length;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
   if (status) return refuse(reader, spec, reason);
+  material->fracture_energy = energy >= 0 ? spec->values[energy] : NAN;
+  material->length = at >= 0 ? spec->values[at] : NAN;
+  material->length_given = given;
   if (material_limit(material, spec->smallest_strain, spec->largest_strain, reason, sizeof reason))
     return refuse(reader, spec, reason);
   material->name = spec->head.name;

@@ -27,6 +27,9 @@ typedef struct Material {
   void *constants;      /* owned */
   double density, bulk, shear;
   double softening_energy; /* as the law says; 0: it does not soften */
+  double fracture_energy;  /* G_F that the deck gives the law; NaN: none */
+  double length;           /* over which the law spreads G_F; NaN: none */
+  bool length_given;       /* by the deck, in place of that of the formulation */
   int history_values;
   Remote *remote; /* owned; NULL: the law is in this program */
 } Material;

@@ -166,6 +166,9 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
   return &domain->regions[domain->region[place / SLICE]];
 }
 
+/** Returns what limits of bonds of a region depend on, without the reader and what is present. */
+LimitsOf domain_limits_of(const Domain *domain, int region, const BondLength *lengths);
+
 /** Whether a block of a region is made of a material. */
 bool region_is_made_of(const Domain *domain, const Region *region, const char *material);
 /** Whether all laws of a region, NULL: of all materials of the deck, are Hooke's. */

@@ -55,6 +55,20 @@ static int create_failure_parts(Domain *d, const Influence *influence, Error *er
   return BRECCIA_OK;
 }
 
+LimitsOf domain_limits_of(const Domain *d, int region, const BondLength *lengths)
+{
+  const Region *r = &d->regions[region];
+  return (LimitsOf){.type = r->type,
+                    .lengths = lengths,
+                    .formulation = r->formulation,
+                    .body = &d->body,
+                    .family = &d->family,
+                    .has_points = r->points.on_bonds && r->points.components == 1,
+                    .section = body_section(&d->body),
+                    .materials = d->materials,
+                    .material_count = d->material_count};
+}
+
 static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *lengths)
 {
   const Criterion *criterion = criterion_of(spec);
@@ -66,8 +80,9 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   for (int r = 0; r < d->region_count && !status; ++r) {
     for (int k = 0; k < d->material_count; ++k)
       present[k] = region_has_material(d, &d->regions[r], d->materials[k].name);
-    const LimitsOf of = {reader,  d->regions[r].type, lengths, body_section(&d->body), d->materials,
-                         present, d->material_count};
+    LimitsOf of = domain_limits_of(d, r, lengths);
+    of.reader = reader;
+    of.present = present;
     status = criterion->limits(spec, &of, limit);
     for (int k = 0; k < d->material_count && !status; ++k)
       if (present[k]) d->failure.limit[k] = fmin(d->failure.limit[k], limit[k]);

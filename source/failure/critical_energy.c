@@ -4,7 +4,11 @@
  * that count, beta, count here too: the bond between V_i and V_j breaks at w_c beta V_i V_j. */
 #include "failure/critical_energy.h"
 
+#include "failure/crack_planes.h"
+#include "failure/critical_stretch.h"
+
 #include <math.h>
+#include <string.h>
 
 static const Field fields[] = {
     {.key = "bond energy",
@@ -22,6 +26,12 @@ static const Field fields[] = {
      .range = "(0, inf)",
      .meaning = "G_F, from which it follows: 4 G_F / (pi delta^4) in space, 3 G_F / (2 t delta^3) in the plane, "
                 "2 G_F / (A delta^2) of a bar"},
+    {.key = "calibration",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(CriticalEnergySpec, calibration),
+     .standard = "lattice",
+     .meaning = FAILURE_CALIBRATION_MEANING,
+     .words = FAILURE_CALIBRATIONS},
 };
 static const Section section = {
     .name = "critical bond energy",
@@ -42,6 +52,14 @@ double bonds_across(Space space, double horizon, double cut)
   return space == SPACE_BAR ? cut * pow(horizon, 2) / 2 : 2 * cut * pow(horizon, 3) / 3;
 }
 
+/** Returns the number of bonds across a unit area, each by its volumes: on the lattice of a material, or by the
+ *  integrals of a continuum. */
+static double critical_energy_bonds(const LimitsOf *of, int material, const char *calibration)
+{
+  const double bonds = strcmp(calibration, "lattice") ? NAN : crack_mean(of, material, crack_bonds_across);
+  return isnan(bonds) ? bonds_across(of->lengths->space, of->lengths->horizon, of->section) : bonds;
+}
+
 static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
 {
   const CriticalEnergySpec *spec = failure->keys;
@@ -50,9 +68,6 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
     return node_error(reader->document, section_node(spec, isnan(spec->energy) ? "criterion" : "bond energy"),
                       reader->error, "failure: give 'bond energy' or 'fracture energy'%s",
                       isnan(spec->energy) ? "" : ", not both");
-  const double energy =
-      isnan(spec->energy) ? spec->fracture_energy / bonds_across(of->lengths->space, of->lengths->horizon, of->section)
-                          : spec->energy;
   for (int k = 0; k < of->material_count; ++k) {
     const Material *m = &of->materials[k];
     if (of->present[k] && m->law->components == 1 && (!m->law->linear || isfinite(material_failure_strain(m))))
@@ -61,7 +76,8 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
                         "material '%s' says by itself what bonds carry: leave the criterion out, or give "
                         "'elastic-1d'",
                         m->law->name, m->name);
-    limit[k] = energy;
+    limit[k] =
+        isnan(spec->energy) ? spec->fracture_energy / critical_energy_bonds(of, k, spec->calibration) : spec->energy;
   }
   return BRECCIA_OK;
 }
@@ -138,22 +154,37 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   const double limit = failure_limit(failure, place, bond->neighbour) * bond->weight /
                        (influence * f->particles->volume[bond->neighbour]);
   if (!(bond->weight > 0) || isinf(limit) || !failure_is_longer(f, place, bond)) return false;
+  const double small = 0.1; /* of the limit: half states of bonds that are asked for all that they hold */
+  const FailureRegion *region = &failure->regions[failure->region[slice]];
+  double (*held)(const void *, int64_t, int64_t, int) = region->type->held_energy;
   const double own = half_energy(failure, f, slice, slot, lane, bond);
-  if (own < limit / 2 * (1 - 1e-12)) return false;
+  if (!held && own < limit / 2 * (1 - 1e-12)) return false;
   const int64_t there = bond->neighbour / SLICE, back = family_slot(f, bond->neighbour, (int32_t)place);
   const Bond turned = family_bond(f, there, back, bond->neighbour % SLICE);
-  return own + half_energy(failure, f, there, back, bond->neighbour % SLICE, &turned) > limit;
+  const double both = own + half_energy(failure, f, there, back, bond->neighbour % SLICE, &turned);
+  if (!held) return both > limit;
+  const double volumes = f->particles->volume[place] * f->particles->volume[bond->neighbour];
+  return both > small * limit && held(region->formulation, slice, slot, lane) > limit * volumes;
 }
 
-/** The fracture energy behind the limit, and the stretch of which a crack spends as much. */
-static void describe(const LimitsOf *of, int material, double limit, const Units *units, Text *text)
+/** Adds the fracture energy behind the limit, and the stretch of which a crack spends as much. */
+static void describe(const FailureSpec *failure, const LimitsOf *of, int material, double limit, const Units *units,
+                     Text *text)
 {
   char unit[64];
   units_name(units, dimension_find("fracture energy"), unit, sizeof unit);
-  const double energy = limit * bonds_across(of->lengths->space, of->lengths->horizon, of->section);
-  const FormulationType *type = of->type->critical_stretch ? of->type : formulation_find("bond-based");
+  const CriticalEnergySpec *spec = failure->keys;
+  const double energy = limit * critical_energy_bonds(of, material, spec->calibration);
+  LimitsOf bonds = *of;
+  if (!of->type->critical_stretch) bonds.type = formulation_find("bond-based"); /* by its continuum */
   text_add(text, " (a fracture energy of %.4g %s, as of bonds that break at a stretch of %.3g)", energy, unit,
-           type->critical_stretch(of->lengths, &of->materials[material], energy));
+           critical_stretch_of(&bonds, material, energy, of->type->critical_stretch ? spec->calibration : "continuum"));
+}
+
+static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])
+{
+  (void)material;
+  return limit * crack_bonds_across(block, normal);
 }
 
 const Criterion criterion_critical_energy = {
@@ -165,6 +196,7 @@ const Criterion criterion_critical_energy = {
     .limits = limits,
     .create = create,
     .describe = describe,
+    .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
 };

@@ -1,7 +1,10 @@
 /* A bond breaks when its stretch (|Y| - |xi|) / |xi|, less its free strain, exceeds a limit (Silling 2000; docs/theory.md 2). */
 #include "failure/critical_stretch.h"
 
+#include "failure/crack_planes.h"
+
 #include <math.h>
+#include <string.h>
 
 static const Field fields[] = {
     {.key = "critical stretch",
@@ -18,6 +21,12 @@ static const Field fields[] = {
      .standard = "",
      .range = "(0, inf)",
      .meaning = "G_F, from which the critical stretch follows where the formulation knows how"},
+    {.key = "calibration",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(CriticalStretchSpec, calibration),
+     .standard = "lattice",
+     .meaning = FAILURE_CALIBRATION_MEANING,
+     .words = FAILURE_CALIBRATIONS},
 };
 static const Section section = {.name = "critical stretch",
                                 .about = "Keys of `failure` with `criterion: critical stretch`.",
@@ -29,7 +38,24 @@ const CriticalStretchSpec *critical_stretch_spec(const FailureSpec *failure)
   return failure && criterion_of(failure)->section == &section ? failure->keys : NULL;
 }
 
-/** Limit of each material: the smaller of what the deck says for all and what its law says. */
+double critical_stretch_of(const LimitsOf *of, int material, double energy, const char *calibration)
+{
+  const Material *m = &of->materials[material];
+  const double length =
+      !calibration || !strcmp(calibration, "lattice") ? crack_mean(of, material, crack_length_across) : NAN;
+  return isnan(length) ? of->type->critical_stretch(of->lengths, m, energy)
+                       : sqrt(2 * energy / (material_young(m) * length));
+}
+
+/** Returns the fracture energy from which the lattice gives the limit of a material: that of the criterion, or that of a
+ *  law whose bonds break at once. NaN: none. */
+static double critical_stretch_energy(const CriticalStretchSpec *spec, const LimitsOf *of, const Material *m)
+{
+  if (spec && !isnan(spec->fracture_energy)) return spec->fracture_energy;
+  return m->law->components == 1 && m->law->linear && !m->length_given && !of->has_points ? m->fracture_energy : NAN;
+}
+
+/** Finds the limit of each material: the smaller one of what the deck says for all and what its law says. */
 static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
 {
   const CriticalStretchSpec *spec = critical_stretch_spec(failure);
@@ -45,10 +71,13 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
         of->type->name);
   for (int k = 0; k < of->material_count; ++k) {
     const Material *m = &of->materials[k];
-    double stretch = spec ? spec->stretch : NAN;
+    double stretch = spec ? spec->stretch : NAN, strain = material_failure_strain(m);
     if (spec && !isnan(spec->fracture_energy))
-      stretch = of->type->critical_stretch(of->lengths, m, spec->fracture_energy);
-    limit[k] = fmin(material_failure_strain(m), stretch); /* of a number and NaN: the number */
+      stretch = critical_stretch_of(of, k, spec->fracture_energy, spec->calibration);
+    else if (of->type->critical_stretch && !isnan(critical_stretch_energy(spec, of, m)) &&
+             (!spec || !strcmp(spec->calibration, "lattice")))
+      strain = critical_stretch_of(of, k, m->fracture_energy, NULL);
+    limit[k] = fmin(strain, stretch); /* of a number and NaN: the number */
   }
   return BRECCIA_OK;
 }
@@ -115,12 +144,19 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   return sqrt(square) > (1 + failure_limit(failure, place, bond->neighbour) + freely) * bond->length;
 }
 
+static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])
+{
+  if (!block->type->critical_stretch) return NAN;
+  return material_young(material) * crack_length_across(block, normal) * limit * limit / 2;
+}
+
 const Criterion criterion_critical_stretch = {
     .name = "critical stretch",
     .about = "a bond breaks when it is stretched by more than a share of its length",
     .source = "Silling 2000",
     .section = &section,
     .limits = limits,
+    .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
 };

@@ -23,6 +23,16 @@ typedef struct NoFailureSpec {
 
 extern const Section failure_section;
 
+/* How criteria find their limit from a fracture energy: a key of each of them. */
+#define FAILURE_CALIBRATIONS                                                                                           \
+  (const char *const[])                                                                                                \
+  {                                                                                                                    \
+    "lattice", "continuum", NULL                                                                                       \
+  }
+#define FAILURE_CALIBRATION_MEANING                                                                                    \
+  "how a fracture energy gives the limit: in the mean over all plane cracks through the lattice at hand, or by the "   \
+  "integrals of a continuum, as published; particles from a file take the latter"
+
 typedef struct Failure Failure;
 
 /** What the limits of bonds may depend on. */
@@ -30,11 +40,18 @@ typedef struct LimitsOf {
   const DeckReader *reader;
   const FormulationType *type;
   const BondLength *lengths;
-  double section; /* thickness of a plane body, cross-section of a bar, else 1 */
+  const void *formulation; /* of that type */
+  const Body *body;
+  const Family *family;
+  bool has_points; /* laws of bonds judge themselves when they break */
+  double section;  /* thickness of a plane body, cross-section of a bar, else 1 */
   const Material *materials;
   const bool *present; /* [materials] whether bonds of this formulation are made of it */
   int material_count;
 } LimitsOf;
+
+/** The lattice of one block, with what a criterion needs of it (crack_planes.h). */
+typedef struct CrackBlock CrackBlock;
 
 typedef struct Criterion {
   const char *name, *about, *source;
@@ -46,7 +63,11 @@ typedef struct Criterion {
   /** Makes what it needs beside limits, once. NULL: nothing. */
   int (*create)(Failure *failure, const Family *family, Error *error);
   /** Adds to an overview what people should know of the limit of a material, behind its number. NULL: nothing. */
-  void (*describe)(const LimitsOf *of, int material, double limit, const Units *units, Text *text);
+  void (*describe)(const FailureSpec *spec, const LimitsOf *of, int material, double limit, const Units *units,
+                   Text *text);
+  /** Energy per area that a plane crack with that normal takes in a block whose bonds break at their limit; NaN or
+   *  NULL: unknown. */
+  double (*crack_energy)(const CrackBlock *block, const Material *material, double limit, const double normal[3]);
   /** Marks a slice if some bond of it may exceed its limit.
    *  @return how far every particle may move before the slice has to be looked at again; 0: look at every step */
   double (*suspect)(const Failure *failure, const Family *family, int64_t slice, uint8_t *suspect);

@@ -311,6 +311,7 @@ const FormulationType formulation_bond_based = {
     .gradient = gradient,
     .stress = stress,
     .characteristic_length = bond_characteristic_length,
+    .crack_length = bond_crack_length,
     .critical_stretch = bond_critical_stretch,
     .shown_young = bond_shown_young,
     .describe = bond_describe,

@@ -151,6 +151,20 @@ double bond_critical_stretch(const BondLength *of, const Material *material, dou
   return sqrt(2 * energy / (material_young(material) * bond_characteristic_length(of)));
 }
 
+/** G(n) of docs/theory.md 4 with bonds of the energy c w L s^2 / 2. */
+double bond_crack_length(const void *formulation, int block, const double normal[3])
+{
+  const BondBased *b = formulation;
+  if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block)) return NAN;
+  double sum = 0;
+  for (int k = b->family->pattern_begin[block]; k < b->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &b->family->patterns[k];
+    const double along = p->xi[0] * normal[0] + p->xi[1] * normal[1] + p->xi[2] * normal[2];
+    sum += fabs(along) / 2 * p->weight * p->length;
+  }
+  return b->stiffness[block] * sum / material_young(bond_material(b, block));
+}
+
 double bond_shown_young(const void *formulation, int block, int axis)
 {
   const BondBased *b = formulation;

@@ -296,10 +296,12 @@ void hybrid_even_stress(const void *formulation, const uint8_t *marked, double *
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9]);
 void hybrid_stress(const void *formulation, int64_t place, double stress[6]);
 double hybrid_characteristic_length(const BondLength *of);
+double hybrid_crack_length(const void *formulation, int block, const double normal[3]);
 
 /** As FormulationType describes them (hybrid_breaking.c). */
 double hybrid_free_tension(const void *formulation, int64_t place);
 void hybrid_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
+double hybrid_held_energy(const void *formulation, int64_t slice, int64_t slot, int lane);
 void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                         StoredEnergy *energy);
 

@@ -312,6 +312,37 @@ void hybrid_stress(const void *formulation, int64_t place, double stress[6])
   find_means(formulation, place, strain, stress);
 }
 
+static double hybrid_along(const double xi[3], const double normal[3])
+{
+  return xi[0] * normal[0] + xi[1] * normal[1] + xi[2] * normal[2];
+}
+
+/** Returns the mean extent of the points of a lattice along a normal, by their volumes. A plane crack strains all points
+ *  whose members stand on both of its sides, and they follow their law to its end. */
+double hybrid_crack_length(const void *formulation, int block, const double normal[3])
+{
+  const Hybrid *h = formulation;
+  const Family *f = h->family;
+  const double square = pow(f->horizon * (1 + 1e-9), 2);
+  if (!h->body->lattices[block].chunks || block_is_foreign(h->foreign, h->particles, block)) return NAN;
+  double sum = 0, whole = 0;
+  for (int k = f->pattern_begin[block]; k < f->pattern_begin[block + 1]; ++k) {
+    const Pattern *bond = &f->patterns[k];
+    double low = fmin(0, hybrid_along(bond->xi, normal)), high = fmax(0, hybrid_along(bond->xi, normal));
+    for (int j = f->pattern_begin[block]; j < f->pattern_begin[block + 1]; ++j) {
+      const double *xi = f->patterns[j].xi;
+      double apart = 0;
+      for (int n = 0; n < 3; ++n) apart += (xi[n] - bond->xi[n]) * (xi[n] - bond->xi[n]);
+      if (apart > square) continue;
+      low = fmin(low, hybrid_along(xi, normal));
+      high = fmax(high, hybrid_along(xi, normal));
+    }
+    sum += bond->length * bond->weight * (high - low);
+    whole += bond->length * bond->weight;
+  }
+  return whole > 0 ? sum / whole : NAN;
+}
+
 /** How far members of a bond's point stand apart along the first axis, over all bonds of a square or cubic lattice by their volumes: a crack across that axis
  *  strains all points whose members stand on both of its sides, and they follow their law to its end. */
 double hybrid_characteristic_length(const BondLength *of)

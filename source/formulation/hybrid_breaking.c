@@ -145,6 +145,15 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   h->hidden[0] = h->hidden[1] = -1;
 }
 
+/** What the body would lose without the bond at the displacements held: the energy of its own point, and what points around
+ *  it lose that have its ends among their members. */
+double hybrid_held_energy(const void *formulation, int64_t slice, int64_t slot, int lane)
+{
+  StoredEnergy energy;
+  hybrid_bond_energy(formulation, slice, slot, lane, 0, &energy);
+  return energy.received;
+}
+
 double hybrid_free_tension(const void *formulation, int64_t place)
 {
   const Hybrid *h = formulation;

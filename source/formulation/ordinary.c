@@ -74,6 +74,7 @@ const FormulationType formulation_ordinary = {
     .strain_free = ordinary_strain_free,
     .gradient = ordinary_gradient,
     .stress = ordinary_stress,
+    .crack_length = ordinary_crack_length,
     .critical_stretch = ordinary_critical_stretch,
     .former_bonds = ordinary_former_bonds,
     .describe = ordinary_describe,

@@ -165,6 +165,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error);
 void ordinary_destroy(void *formulation);
 void ordinary_renew(void *formulation, int64_t slice);
 void ordinary_describe(const void *formulation, const Units *units, Text *text);
+double ordinary_crack_length(const void *formulation, int block, const double normal[3]);
 double ordinary_critical_stretch(const BondLength *of, const Material *material, double energy);
 size_t ordinary_bytes(const void *formulation);
 FormerBonds ordinary_former_bonds(const void *formulation);

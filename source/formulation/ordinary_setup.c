@@ -289,6 +289,50 @@ double ordinary_critical_stretch(const BondLength *of, const Material *material,
   return sqrt(energy / (of->horizon * ((d * d * ordinary_bulk(of->space, material) - shear) * twice + shear * once)));
 }
 
+/** A bond across a plane: its component along the normal, and its part in m. */
+typedef struct OrdinaryCrossing {
+  double along, part;
+} OrdinaryCrossing;
+
+/** Orders bonds from the one that reaches the furthest. */
+static int ordinary_compare(const void *a, const void *b)
+{
+  const double one = ((const OrdinaryCrossing *)a)->along, other = ((const OrdinaryCrossing *)b)->along;
+  return (one < other) - (one > other);
+}
+
+/** Computes the length of ordinary_critical_stretch by sums over the lattice in place of integrals. A particle at the
+ *  distance z from the plane has the bonds of xi . n > z beyond the plane. */
+double ordinary_crack_length(const void *formulation, int block, const double normal[3])
+{
+  const Ordinary *o = formulation;
+  const Family *f = o->family;
+  if (!o->body->lattices[block].chunks || block_is_foreign(o->foreign, o->particles, block)) return NAN;
+  const int first = f->pattern_begin[block], last = f->pattern_begin[block + 1];
+  OrdinaryCrossing *bonds = memory_zeroed((size_t)(last - first) + 1, sizeof *bonds, "crack planes", NULL);
+  if (!bonds) return NAN;
+  double whole = 0, beyond = 0, once = 0, twice = 0;
+  for (int k = first; k < last; ++k) {
+    const Pattern *p = &f->patterns[k];
+    const double along = p->xi[0] * normal[0] + p->xi[1] * normal[1] + p->xi[2] * normal[2];
+    bonds[k - first] = (OrdinaryCrossing){fmax(0, along), p->weight * o->factor[k] * p->length * p->length};
+    whole += bonds[k - first].part;
+  }
+  qsort(bonds, (size_t)(last - first), sizeof *bonds, ordinary_compare);
+  for (int k = 0; k < last - first; ++k) {
+    beyond += bonds[k].part / whole;
+    const double interval = bonds[k].along - bonds[k + 1].along;
+    once += beyond * interval;
+    twice += beyond * beyond * interval;
+  }
+  free(bonds);
+  int64_t slice = 0;
+  while (o->particles->block[slice] != block) ++slice;
+  const Material *m = &o->materials[o->material[slice]];
+  const double bulk = ordinary_bulk(o->space, m), shear = ordinary_shear(o->space, m);
+  return 2 * ((o->dimensions * o->dimensions * bulk - shear) * twice + shear * once) / material_young(m);
+}
+
 size_t ordinary_bytes(const void *formulation)
 {
   const Ordinary *o = formulation;

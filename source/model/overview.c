@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/cores.h"
 #include "base/tensor.h"
+#include "domain/toughness.h"
 #include "model/plausibility.h"
 #include "results/result_file.h"
 #include <math.h>
@@ -145,13 +146,9 @@ static void describe_limit(const breccia_model *model, int material, Text *text)
   const BondLength lengths = {peridynamics_space(model->spec->peridynamics), failure->influence, d->family.horizon,
                               d->body.largest_spacing};
   for (int r = 0; criterion->describe && r < d->region_count; ++r) {
-    const LimitsOf of = {.type = d->regions[r].type,
-                         .lengths = &lengths,
-                         .section = body_section(&d->body),
-                         .materials = d->materials,
-                         .material_count = d->material_count};
+    const LimitsOf of = domain_limits_of(d, r, &lengths);
     if (!region_has_material(d, &d->regions[r], d->materials[material].name)) continue;
-    criterion->describe(&of, material, failure->limit[material], model->units, text);
+    criterion->describe(model->spec->failure, &of, material, failure->limit[material], model->units, text);
     return;
   }
 }
@@ -203,6 +200,7 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "\n");
   for (int r = 0; r < d->region_count; ++r)
     if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, model->units, text);
+  toughness_describe(d, model->spec->failure, model->units, text);
   describe_initial_stress(model, text);
   plausibility_describe_contact(model, text);
   forces_describe(&d->forces, model->units, text);

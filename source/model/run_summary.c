@@ -1,4 +1,5 @@
 /* What a run did: summary.json, and the same in words. */
+#include "domain/toughness.h"
 #include "formulation/correspondence.h"
 #include "model/run.h"
 
@@ -452,14 +453,16 @@ void run_tell_outcome(Run *run, int status)
     if (model->loading.loads[k].spec->name) tell_load(model, &model->loading.loads[k], t);
   double x[3];
   const BrokenBond *first = first_broken(d, x);
-  if (first)
+  if (first) {
     text_add(
         t,
         "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
         (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
         (long long)d->family.bonds / 2);
-  else if (d->failure.criterion)
+    toughness_describe(d, model->spec->failure, model->units, t);
+  } else if (d->failure.criterion) {
     text_add(t, "no bond broke\n");
+  }
   /* Of bodies at rest: what forces within the tolerance of equilibrium do is of either sign. */
   const double rounding = 1e-6 * s->ledger.paid;
   const struct {

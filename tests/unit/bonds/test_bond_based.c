@@ -315,7 +315,7 @@ static void critical_stretch_follows_from_the_fracture_energy(void **state)
     breccia_model *model =
         model_of("materials: {m: {model: elastic-1d, density: 1, Young modulus: 150}}\n"
                  "peridynamics: {formulation: bond-based, space: %s, horizon: 3.14159265358979, influence: %s}\n"
-                 "body: {b: {material: m, spacing: 1, %s}}\nfailure: {fracture energy: 0.07}\n"
+                 "body: {b: {material: m, spacing: 1, %s}}\nfailure: {fracture energy: 0.07, calibration: continuum}\n"
                  "solve: {explicit: {steps: 1}}\n",
                  cases[k].space, cases[k].influence,
                  space ? "shape: {box: {particles: [8, 8, 8]}}"

@@ -75,7 +75,7 @@ static const struct {
     {"m", ELASTIC("4.45", "0.9 TPa"), "", NULL},
     {"m", ELASTIC("4.43", "0.9 TPa"), "", "waves would run at 1.5e+04 m/s"},
     /* strength beside stiffness */
-    {"m", STRONG("2", "10 GPa", "499 MPa", "900 N/mm"), "", NULL},
+    {"m", STRONG("2", "1 GPa", "49.9 MPa", "900 N/mm"), "", NULL},
     {"m", STRONG("2", "10 GPa", "21 kPa", "1 N/m"), "", NULL},
     {"m", STRONG("2", "10 GPa", "19", "1 N/m"), "",
      "tensile strength: 19 is 19 kPa; materials like it have 20 kPa to 5 GPa; did you mean '19 MPa'? In m, kN, s that "
@@ -94,7 +94,7 @@ static const struct {
      "velocity: 16.5 km/s is more than the speed of waves"},
     /* the control of zero-energy modes */
     {"m", USUAL, "", NULL},
-    {"m", STRONG("2", "10 GPa", "510 MPa", "900 N/mm"), "",
+    {"m", STRONG("2", "1 GPa", "51 MPa", "900 N/mm"), "",
      "tensile strength: it is 0.051 of Young's modulus, so that the material stretches by 5 % before it breaks"},
     /* fracture energies of anything, and of concrete by its name or its numbers */
     {"m", USUAL, BOUND("0.11"), NULL},
@@ -104,6 +104,12 @@ static const struct {
     {"m", USUAL, BOUND("1010"), "; did you mean '1010 N/m'? In m, kN, s that is 1.01"},
     {"m", USUAL, BOUND("0.05 N/m"), "; did you mean '0.05 N/mm'? In m, kN, s that is 0.05"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "41 N/m"), "", NULL},
+    /* E G_F / f_t^2 beside the horizon of 30.15 mm: 2.01 and 1.98 of it */
+    {"m", STRONG("2.4", "30 GPa", "7.03 MPa", "100 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "7.09 MPa", "100 N/m"), "",
+     "E G_F / f_t^2 of material 'm' is 2 horizons, so that cracks spend more than G_F (1.3 of it at 1.4 horizons, 1.1 "
+     "at "
+     "2.5); take a horizon of 0.02 m, which is a spacing of 0.0066 m, or less"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "399 N/m"), "", NULL},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "401 N/m"), "", "fracture energy: 401 N/m " MUCH},

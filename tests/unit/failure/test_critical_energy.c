@@ -229,7 +229,7 @@ static double booked_over_wanted(const char *formulation, const char *law, bool 
   breccia_model *m =
       model_of("materials: {m: {%s, density: 2, Young modulus: 1e4}}\nbody: {b: {material: m, %s}}\n"
                "peridynamics: {formulation: %s, space: %s}\n"
-               "failure: {criterion: critical bond energy, fracture energy: %g}\n"
+               "failure: {criterion: critical bond energy, fracture energy: %g, calibration: continuum}\n"
                "loads: [{on: {inside: {box: {from: [-1, -1, -1], to: [0.8, 9, 9]}}}, velocity: %s},\n"
                "        {on: {inside: {box: {from: [0.8, -1, -1], to: [9, 9, 9]}}}, velocity: %s}]\n"
                "solve: {explicit: {end time: 1.5, safety: 0.5}}\n",
