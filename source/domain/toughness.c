@@ -16,10 +16,8 @@ static const struct {
   const char *formulation, *criterion;
   double least, most;
 } toughness_felt[] = {
-    {"bond-based", "critical stretch", 1.4, 1.5},
-    {"bond-based", "critical bond energy", 1.4, 1.7},
-    {"ordinary", "critical stretch", 1.5, 1.7},
-    {"ordinary", "critical bond energy", 1.5, 1.7},
+    {"bond-based", "critical stretch", 1.4, 1.5},         {"bond-based", "critical bond energy", 1.4, 1.7},
+    {"ordinary", "critical stretch", 1.5, 1.7},           {"ordinary", "critical bond energy", 1.5, 1.7},
     {"correspondence", "critical bond energy", 1.3, 1.4},
 };
 
