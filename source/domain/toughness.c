@@ -62,16 +62,17 @@ static void toughness_add(const Domain *d, const ToughnessBlock *t, bool asked, 
   const CrackBand band = crack_band(dimensions, toughness_across, t);
   if (isnan(band.mean)) return;
   char unit[64] = "";
-  if (!asked) units_name(units, dimension_find("fracture energy"), unit, sizeof unit);
-  text_add(text, "%s: %s a crack ", d->body.blocks[t->block.block]->head.name,
+  if (!asked) units_name(units, dimension_find("fracture energy"), unit + 1, sizeof unit - 1);
+  if (!asked) unit[0] = ' ';
+  const char *const of = asked ? " of the fracture energy" : unit;
+  text_add(text, "%s: %s a crack take ", d->body.blocks[t->block.block]->head.name,
            t->criterion ? "bonds across" : "points across");
   if (dimensions > 1)
-    text_add(text, "take %.3g to %.3g%s%s by its direction (mean %.3g", band.least, band.most,
-             asked ? " of the fracture energy" : " ", unit, band.mean);
+    text_add(text, "%.3g to %.3g%s by its direction (mean %.3g%s", band.least, band.most, of, band.mean, unit);
   else
-    text_add(text, "take %.3g%s%s (", band.mean, asked ? " of the fracture energy" : " ", unit);
+    text_add(text, "%.3g%s (", band.mean, of);
   for (int k = 0; k < dimensions; ++k)
-    text_add(text, "%s%.3g across %c", k || dimensions > 1 ? ", " : "", band.across[k], "xyz"[k]);
+    text_add(text, "%s%.3g%s across %c", k || dimensions > 1 ? ", " : "", band.across[k], unit, "xyz"[k]);
   text_add(text, ")");
   if (asked) toughness_add_felt(t, text);
   text_add(text, "\n");

@@ -109,8 +109,8 @@ static bool exceeds(breccia_model *m, int columns, int rows)
 }
 
 /** Even strain without a Poisson ratio, at 0.99 and 1.01 of what theory gives for one bond: its stretch is eps cos^2 + gamma sin cos, across its section are E eps cos^2
- *  and along it E eps sin cos, and it holds sigma : eps over two times d V_b: V_b is V / (2 + 2 sqrt 2) along an axis and sqrt 2 times that on the diagonal.. Bonds that have not become
- *  longer never break. */
+ *  and along it E eps sin cos, and with it goes the energy of its point, sigma : eps over two times V_b: V_b is V / (2 + 2 sqrt 2) along an axis and sqrt 2 times that on the
+ *  diagonal. Bonds that have not become longer never break. */
 static void bonds_have_the_limits_of_closed_forms(void **state)
 {
   (void)state;
@@ -133,9 +133,9 @@ static void bonds_have_the_limits_of_closed_forms(void **state)
     for (size_t k = 0; k < sizeof of / sizeof *of; ++k)
       for (int above = 0; above < 2; ++above) {
         const bool by_energy = of[k].strain == 0;
-        if (by_energy && !pairwise) continue; /* forces on members have their part in the energies of bonds */
-        /* w_c V^2 is (1/2) E limit^2 d V_b, d = 2 */
-        const double held = young * limit * limit * part / volume;
+        if (by_energy && !pairwise) continue; /* other points lose a member with it */
+        /* w_c V^2 is (1/2) E limit^2 V_b of a bond along an axis */
+        const double held = young * limit * limit * part / 2 / volume;
         char criterion[160];
         snprintf(criterion, sizeof criterion, of[k].criterion, held);
         breccia_model *m = model_of(
@@ -146,9 +146,8 @@ static void bonds_have_the_limits_of_closed_forms(void **state)
                   "failure: {%s}\n"
                   "solve: {explicit: {steps: 1, time step: 1e-9%s}}\n",
             pairwise ? "pairwise" : "variational", criterion, pairwise ? ", stiffness damping: 1e-3" : "");
-        /* Along the diagonal of a pull half of the strain goes, and half of the work: cos^2 of 1 + ... of the bond's force along its ends */
         const double strain =
-            (above ? 1.01 : 0.99) * limit * (by_energy ? of[k].rows ? sqrt(sqrt(2)) : 1 : of[k].strain);
+            (above ? 1.01 : 0.99) * limit * (by_energy ? of[k].rows ? sqrt(sqrt(0.5)) : 1 : of[k].strain);
         const double f[9] = {of[k].way == PULL ? 1 + strain : 1, of[k].way == SHEAR ? strain : 0, 0, 0, 1, 0, 0, 0, 1};
         deform_uniformly(m, f);
         compute_forces(m);
