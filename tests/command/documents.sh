@@ -10,7 +10,7 @@ if command -v python3 > /dev/null; then
   python3 "$source/scripts/drawings.py" "$work/pictures"
   diff -r "$work/pictures" "$source/docs/pictures" > /dev/null || fail "docs/pictures is not current: run 'make docs'"
 fi
-every=4 # one in so many laws and decks; test_example_decks makes models of all decks
+every=8 # one in so many laws and decks; test_example_decks makes models of all decks
 [ -z "${BRECCIA_WHOLE:-}" ] || every=1
 [ -z "${BRECCIA_SANITIZED:-}" ] || every=17
 number=0

@@ -3,12 +3,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 environment=.venv/external
-if ! cmp -s tests/external/requirements.txt "$environment/installed" 2> /dev/null; then
-  python3 -m venv --clear "$environment"
-  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/external/requirements.txt
-  cp tests/external/requirements.txt "$environment/installed"
-fi
-sh scripts/opensees.sh
+sh tests/external/environment.sh
 cmake --preset test > /dev/null
 cmake --build --preset test --target breccia_command compare_results > /dev/null
 work=$(mktemp -d)
