@@ -2,9 +2,9 @@
  *
  * A model is loaded from a deck (YAML), stepped, looked at and written. Nothing here keeps state outside the objects
  * that it hands out: two models may exist in one process, each used by one thread at a time.
- * Functions return a status and put the words into the error that they are given (one line per problem). A NULL pointer where an object is
- * needed is BRECCIA_USER_ERROR; functions that look at an object return 0, NaN, NULL or "" of NULL. A model with threads belongs to the process that
- * loaded it: after a fork the child is refused.
+ * Functions return a status and put the words into the error that they are given (one line per problem). A NULL pointer
+ * where an object is needed is BRECCIA_USER_ERROR; functions that look at an object return 0, NaN, NULL or "" of NULL.
+ * A model with threads belongs to the process that loaded it: after a fork the child is refused.
  *
  * A struct of this header begins with its size, which whoever makes it sets: `breccia_run run = {.size = sizeof run, ...}`. So a
  * program and a library of different versions understand each other: what the older one does not know of is zero.
@@ -121,8 +121,9 @@ typedef struct breccia_law {
   int (*history_values)(const void *constants);
   /** Name of history number k for result files; "" where it is of no use to people. NULL: none has a name. */
   void (*history_name)(const void *constants, int k, char *name, size_t size);
-  /** Writes the history of one point that was never strained: the same numbers at every call, which may come more than once for a point and from several
-   *  threads. A law whose `begin` writes other numbers when it is called again is refused. NULL: zeros. */
+  /** Writes the history of one point that was never strained: the same numbers at every call, which may come more than
+   *  once for a point and from several threads. A law whose `begin` writes other numbers when it is called again is
+   *  refused. NULL: zeros. */
   void (*begin)(const void *constants, double *history);
   /** Stress, trial history and, if wanted, tangent. A point without strain must have a finite stress.
    *  @return -1, or the index of the first point that could not be integrated, 0 to count - 1 */
@@ -160,9 +161,9 @@ typedef struct breccia_options {
   int trap; /* 1: the first division by zero, overflow or invalid operation in a step stops the run and is told with its place in the
              * program. Meanwhile the process has a handler for SIGFPE, which hands on what is not of the model's threads */
   int loose; /* 1: a body that nothing holds is no mistake in stages of statics until they begin, for breccia_model_modes */
-  const volatile int *
-      interrupted; /* polled by breccia_model_step as by breccia_model_run: non-zero ends it with BRECCIA_INTERRUPTED, in the
-                                    * state after the last step that was done; borrowed for the model's life; may be NULL */
+  /** Polled by breccia_model_step as by breccia_model_run: non-zero ends it with BRECCIA_INTERRUPTED, in the state after
+   *  the last step that was done. Borrowed for the model's life; may be NULL. */
+  const volatile int *interrupted;
 } breccia_options;
 
 /** Reads and checks a deck and builds the body, its families and its material points. Nothing is written.
@@ -174,8 +175,8 @@ BRECCIA_API int breccia_model_load_string(const char *deck, const char *name, co
                                           breccia_model **model, breccia_error *error);
 BRECCIA_API void breccia_model_destroy(breccia_model **model);
 
-/** Advances by up to `steps` time steps (fewer where the deck's steps end). Writes no files. Displacements and velocities that the program writes
- *  before a step are motions of its own: their work is booked as external work.
+/** Advances by up to `steps` time steps (fewer where the deck's steps end). Writes no files. Displacements and
+ * velocities that the program writes before a step are motions of its own: their work is booked as external work.
  *  @return BRECCIA_INTERRUPTED where `interrupted` of breccia_options asked for it */
 BRECCIA_API int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error);
 

@@ -314,7 +314,8 @@ static bool repeated_names_create(RepeatedNames *names, const BarLines *lines)
   return true;
 }
 
-/** Lines of a bar that is repeated are told apart by a number behind its name; a bar of such a name could not be told from them. */
+/** Lines of a bar that is repeated are told apart by a number behind its name; a bar of such a name could not be told
+ * from them. */
 static int check_name(const RepeatedNames *names, const BarSpec *bar, const ForcesParts *parts)
 {
   if (!bsearch(&bar->head.name, names->items, names->count, sizeof *names->items, compare_names)) return BRECCIA_OK;

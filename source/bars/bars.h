@@ -194,7 +194,8 @@ double bar_young(const Bars *bars, int bar);
 void bar_node_displacement(const Bars *bars, int64_t node, double displacement[3]);
 double bar_dissipated_in(const Bars *bars, int64_t element);
 BarReport bar_report(const Bars *bars, int deck_bar);
-/** Returns the element of a bar of the deck whose middle is nearest to a point; of equally near ones the first along the bar. */
+/** Returns the element of a bar of the deck whose middle is nearest to a point; of equally near ones the first along
+ * the bar. */
 int64_t bar_nearest(const Bars *bars, int deck_bar, const double point[3]);
 /** Energy that elements would give back: of one bar; of Hooke's law, or of those that have points. */
 double bars_stored(const Bars *bars, int64_t from, int64_t to, bool hookean);

@@ -1,6 +1,7 @@
-/* Threads, memory and version of the BLAS, and OpenMP threads of other libraries. CHOLMOD copies numbers by four threads of OpenMP, and a BLAS may start
- * as many threads as there are cores. Their threads wait actively and delay those of the team; with threads of the BLAS the bits depend on their number.
- * The sequential MUMPS has no threads but those of its BLAS. */
+/* Threads, memory and version of the BLAS, and OpenMP threads of other libraries. CHOLMOD copies numbers by four
+ * threads of OpenMP, and a BLAS may start as many threads as there are cores. Their threads wait actively and delay
+ * those of the team; with threads of the BLAS the bits depend on their number. The sequential MUMPS has no threads but
+ * those of its BLAS. */
 #ifndef BRECCIA_BASE_LIBRARY_THREADS_H
 #define BRECCIA_BASE_LIBRARY_THREADS_H
 
@@ -24,7 +25,8 @@ int library_memory(Error *error);
 /** Returns true if the system would give so many bytes now. For libraries that crash where it refuses them. */
 bool library_room(size_t bytes);
 
-/** Adds ", " with name and version of OpenBLAS where it is the BLAS; otherwise nothing, as other ones do not tell theirs. */
+/** Adds ", " with name and version of OpenBLAS where it is the BLAS; otherwise nothing, as other ones do not tell
+ * theirs. */
 void library_blas_add(Text *text);
 
 #endif

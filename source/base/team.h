@@ -25,7 +25,8 @@ typedef struct Team Team;
 Team *team_create(int threads, Error *error);
 void team_destroy(Team **team);
 int team_threads(const Team *team);
-/** Returns true in a process that has come about by a fork since: it does not have the threads of the team. False for a team without threads of its own. */
+/** Returns true in a process that has come about by a fork since: it does not have the threads of the team. False for a
+ * team without threads of its own. */
 bool team_is_foreign(const Team *team);
 
 /** Makes `team` the one that team_run of this thread uses; NULL: none, this thread alone. @return the one before */

@@ -29,7 +29,8 @@ bool cases_body_failed(const breccia_study *study, int k);
 /** Makes the folder of the cases. @return status, after a message */
 int cases_make_folder(const char *folder);
 
-/** Opens a file of a folder of results for writing: a regular file. A link is not followed. @return NULL with the cause in errno */
+/** Opens a file of a folder of results for writing: a regular file. A link is not followed.
+ *  @return NULL with the cause in errno */
 FILE *cases_open_file(const char *path, bool append);
 
 /** Runs all cases that are not done, some at a time. @param[in] threads  of each; 0: the cores, shared among the jobs */

@@ -17,7 +17,8 @@ typedef struct LawList {
 const breccia_law *law_at(const LawList *list, int k);
 const breccia_law *law_find(const LawList *list, const char *name);
 
-/** Refuses a law of a program whose tables or functions are not whole, before any of them is used. @return true after a message */
+/** Refuses a law of a program whose tables or functions are not whole, before any of them is used.
+ *  @return true after a message */
 bool law_refuse(const breccia_law *law, Error *error);
 
 /** Adds which law was probably meant by a name that is none, or the names of all. */

@@ -149,7 +149,8 @@ static bool material_answers(const Material *m, double *history, char *reason, s
   return bad == -1 && finite;
 }
 
-/** Looks whether a law keeps what the interface asks of it, as far as one point tells. @param[out] reason  if it does not
+/** Looks whether a law keeps what the interface asks of it, as far as one point tells.
+ *  @param[out] reason  if it does not
  *  @return BRECCIA_OK, or status */
 static int material_examine(const Material *m, char *reason, size_t size)
 {

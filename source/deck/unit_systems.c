@@ -8,7 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* UDUNITS-2 keeps states of its parser and of products of units in static variables. Functions of ours that hold the lock call each other. */
+/* UDUNITS-2 keeps states of its parser and of products of units in static variables. Functions of ours that hold the
+ * lock call each other. */
 static pthread_mutex_t units_mutex;
 
 static void units_make_mutex(void)

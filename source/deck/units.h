@@ -5,7 +5,8 @@
 #include "deck/quantity.h"
 #include <udunits2.h>
 
-/** Lets one thread at a time into UDUNITS-2, which is not safe for threads. A thread that holds the lock may take it again. */
+/** Lets one thread at a time into UDUNITS-2, which is not safe for threads. A thread that holds the lock may take it
+ * again. */
 void units_lock(void);
 void units_unlock(void);
 

@@ -47,8 +47,8 @@ double critical_stretch_of(const LimitsOf *of, int material, double energy, cons
                        : sqrt(2 * energy / (material_young(m) * length));
 }
 
-/** Returns the fracture energy from which the lattice gives the limit of a material: that of the criterion, or that of a
- *  law whose bonds break at once. NaN: none. */
+/** Returns the fracture energy from which the lattice gives the limit of a material: that of the criterion, or that of
+ * a law whose bonds break at once. NaN: none. */
 static double critical_stretch_energy(const CriticalStretchSpec *spec, const LimitsOf *of, const Material *m)
 {
   if (spec && !isnan(spec->fracture_energy)) return spec->fracture_energy;

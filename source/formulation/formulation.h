@@ -231,8 +231,8 @@ struct FormulationType {
    *  section. */
   void (*section_stress)(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
                          double *shear);
-  /** Energy that a bond holds, if bonds have points of their own whose forces act on other particles than their ends, too. NULL: half of the product of its
-   *  half states and elongations. */
+  /** Energy that a bond holds, if bonds have points of their own whose forces act on other particles than their ends,
+   * too. NULL: half of the product of its half states and elongations. */
   double (*held_energy)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** From now on keeps what `elongation` and `energy_room` need. NULL: nothing. */
   int (*keep_turns)(void *formulation, Error *error);
@@ -244,11 +244,12 @@ struct FormulationType {
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
-  /** Length l over which a plane crack with that normal spreads a fracture energy in the lattice of a block: if all bonds across it break at a stretch s, and
-   *  nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
+  /** Length l over which a plane crack with that normal spreads a fracture energy in the lattice of a block: if all
+   * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
    *  @return NaN for particles that stand in no lattice */
   double (*crack_length)(const void *formulation, int block, const double normal[3]);
-  /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL: none follows from it. */
+  /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL:
+   * none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
   /** What the free strain of a place would take of the body by growing by 1. NULL: the sum over its

@@ -317,8 +317,8 @@ static double hybrid_along(const double xi[3], const double normal[3])
   return xi[0] * normal[0] + xi[1] * normal[1] + xi[2] * normal[2];
 }
 
-/** Returns the mean extent of the points of a lattice along a normal, by their volumes. A plane crack strains all points
- *  whose members stand on both of its sides, and they follow their law to its end. */
+/** Returns the mean extent of the points of a lattice along a normal, by their volumes. A plane crack strains all
+ * points whose members stand on both of its sides, and they follow their law to its end. */
 double hybrid_crack_length(const void *formulation, int block, const double normal[3])
 {
   const Hybrid *h = formulation;

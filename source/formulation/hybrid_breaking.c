@@ -145,8 +145,8 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   h->hidden[0] = h->hidden[1] = -1;
 }
 
-/** What the body would lose without the bond at the displacements held: the energy of its own point, and what points around
- *  it lose that have its ends among their members. */
+/** What the body would lose without the bond at the displacements held: the energy of its own point, and what points
+ * around it lose that have its ends among their members. */
 double hybrid_held_energy(const void *formulation, int64_t slice, int64_t slot, int lane)
 {
   StoredEnergy energy;

@@ -62,15 +62,16 @@ static double hybrid_young(const Hybrid *h, int64_t place)
   return material_young(&h->materials[h->material[place / SLICE]]);
 }
 
-/** Share of a bond's volume that the material at one of its ends has: the parts of a bond of two materials stand in series. */
+/** Share of a bond's volume that the material at one of its ends has: the parts of a bond of two materials stand in
+ * series. */
 static double hybrid_softer_share(const Hybrid *h, int64_t place, int64_t other)
 {
   const double own = hybrid_young(h, place), both = own + hybrid_young(h, other);
   return both > 0 ? 1 - own / both : 0.5;
 }
 
-/** Weight in the fit of a member of another material than both ends of the bond: strains jump where materials meet, the more the less alike they are
- *  (docs/theory.md 5.3). */
+/** Weight in the fit of a member of another material than both ends of the bond: strains jump where materials meet, the
+ * more the less alike they are (docs/theory.md 5.3). */
 static double hybrid_alike(const Hybrid *h, const int32_t *member, int n)
 {
   const double own = hybrid_young(h, member[0]), there = hybrid_young(h, member[n]);

@@ -24,7 +24,8 @@ static void build_page_lanes(Text *page)
   text_add(page, "; on this processor: %s\n", lane_names[lane_kind()]);
 }
 
-/** Returns true if the loaded libfyaml contains code under GPL-2.0-only: its list of Linux, which 0.9.1 has replaced. */
+/** Returns true if the loaded libfyaml contains code under GPL-2.0-only: its list of Linux, which 0.9.1 has
+ * replaced. */
 static bool build_page_fyaml_is_gpl(void)
 {
   int major = 0, minor = 0, patch = 0;

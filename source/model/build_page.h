@@ -1,5 +1,5 @@
-/* Page of the build for `breccia --version`: version, commit, vector lanes, libraries and the licence of the binary as a
- * whole, a line each. */
+/* Page of the build for `breccia --version`: version, commit, vector lanes, libraries and the licence of the binary as
+ * a whole, a line each. */
 #ifndef BRECCIA_MODEL_BUILD_PAGE_H
 #define BRECCIA_MODEL_BUILD_PAGE_H
 

@@ -56,7 +56,8 @@ typedef struct Entry { /* what a public function that computes gives back at its
   Team *team;
 } Entry;
 
-/** Takes over what the program has written into displacements and velocities since breccia_model_step (solver_take_motion). */
+/** Takes over what the program has written into displacements and velocities since breccia_model_step
+ * (solver_take_motion). */
 int model_take_motion(breccia_model *model, Error *error);
 
 /** Lets team_run of this thread use the model's threads. @return BRECCIA_OK, and then model_leave is due */

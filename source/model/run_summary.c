@@ -382,7 +382,8 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   text_add(t, "\n");
 }
 
-/** Warns of particles that are turned inside out, where a run ends before distortion_watch has looked at them, or does not mind them. */
+/** Warns of particles that are turned inside out, where a run ends before distortion_watch has looked at them, or does
+ * not mind them. */
 static void tell_inverted(const Domain *d, const char *length, Text *t)
 {
   const Particles *p = d->particles;

@@ -18,7 +18,8 @@ static uint32_t global_heap_turn(uint32_t x, int bits)
   return x << bits | x >> (32 - bits);
 }
 
-/** Computes the checksum that HDF5 writes behind its metadata: Jenkins' lookup3 (Jenkins 2006, "lookup3.c") with an initial value of 0. */
+/** Computes the checksum that HDF5 writes behind its metadata: Jenkins' lookup3 (Jenkins 2006, "lookup3.c") with an
+ * initial value of 0. */
 static uint32_t global_heap_checksum(const unsigned char *bytes, size_t size)
 {
   static const int mix[6] = {4, 6, 8, 16, 19, 4}, last[7] = {14, 11, 25, 16, 4, 14, 24};

@@ -43,7 +43,8 @@ typedef struct Ticks {
   int count;
 } Ticks;
 
-/** Returns the ticks from `low` to `high` at multiples of `distance`; none where a range without a length has no distance. */
+/** Returns the ticks from `low` to `high` at multiples of `distance`; none where a range without a length has no
+ * distance. */
 static Ticks ticks_at(double distance, double low, double high)
 {
   const double first = ceil(low / distance - 1e-9), more = floor(high / distance + 1e-9) - first;

@@ -66,7 +66,8 @@ static int say_unread(const char *path, Error *error)
   return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(EIO));
 }
 
-/** Computes the checksum of at most so many bytes of a history, which must be a regular file. @return 0, or 1 with the cause in errno */
+/** Computes the checksum of at most so many bytes of a history, which must be a regular file.
+ *  @return 0, or 1 with the cause in errno */
 static int checksum_of_history(const char *path, int64_t most, uint32_t *sum, int64_t *count)
 {
   const int file = regular_file_open(path, O_RDONLY);

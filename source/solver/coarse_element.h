@@ -20,8 +20,8 @@ typedef struct ElementModuli {
 void element_stiffness(int axes, const double size[3], ElementStiffness *stiffness);
 
 /** Computes the moduli that a particle's family has left.
- *  @param[in] linearised  true: by the tangent of its point, at the state at which the domain was linearised; false: by the elastic moduli.
- *                         Tangents outlive the stage that has linearised the domain, and a restart does not have them */
+ *  @param[in] linearised  true: by the tangent of its point, at the state at which the domain was linearised; false: by
+ *  the elastic moduli. Tangents outlive the stage that has linearised the domain, and a restart does not have them */
 ElementModuli element_moduli(const Domain *domain, int32_t place, bool linearised);
 
 #endif

@@ -350,7 +350,8 @@ static void corner_matrix_fill(const CoarseGrid *g, const CornerMatrix *m)
   m->first[g->corner_count * g->axes] = count;
 }
 
-/** Makes the dense factor of a small matrix. @param[out] done  whether there is one: the matrix is small and positive definite */
+/** Makes the dense factor of a small matrix.
+ *  @param[out] done  whether there is one: the matrix is small and positive definite */
 static int coarse_grid_factor_dense(CoarseGrid *g, const CornerMatrix *m, size_t size, bool *done, Error *error)
 {
   *done = false;

@@ -2,8 +2,8 @@
  *
  * Elements are bilinear or trilinear, as stiff as the particles in them: their moduli, by their volume over the element's. Elements without particles have no
  * stiffness, and their corners no unknowns. What is held holds the grid by springs at the particles. Displacements of particles are interpolated
- * from the corners of their element, so that lattices, scattered particles, holes and several materials are all alike. A library
- * factors its equations (factors.h). */
+ * from the corners of their element, so that lattices, scattered particles, holes and several materials are all alike.
+ * A library factors its equations (factors.h). */
 #ifndef BRECCIA_SOLVER_COARSE_GRID_H
 #define BRECCIA_SOLVER_COARSE_GRID_H
 

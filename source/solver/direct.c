@@ -1,5 +1,5 @@
-/* Direct solution: the stiffness is assembled (matrix.h) and factored by a library (factors.h). Each solution is the sum
- * of up to three corrections, each of which solves for the residual of those before. */
+/* Direct solution: the stiffness is assembled (matrix.h) and factored by a library (factors.h). Each solution is the
+ * sum of up to three corrections, each of which solves for the residual of those before. */
 #include "solver/factors.h"
 #include "solver/linear_solver.h"
 #include "solver/matrix.h"

@@ -12,7 +12,8 @@ static double distortion_determinant(const Domain *d, int32_t place)
   return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
 }
 
-/** Returns true if a particle of a complete family is turned inside out. Fewer bonds than six are those of a truss, whose joints may snap through. */
+/** Returns true if a particle of a complete family is turned inside out. Fewer bonds than six are those of a truss,
+ * whose joints may snap through. */
 static bool distortion_is_inverted(const Domain *d, int64_t n)
 {
   const int few = 6;
@@ -29,7 +30,8 @@ int64_t distortion_inverted(const Domain *d, int32_t *first)
   return count;
 }
 
-/** Returns true if the law of a particle may carry next to nothing, so that nothing hinders the particle from being turned inside out. */
+/** Returns true if the law of a particle may carry next to nothing, so that nothing hinders the particle from being
+ * turned inside out. */
 static bool distortion_may_be_spent(const Domain *d, int32_t place)
 {
   const double most = 0.5; /* damage */

@@ -1,5 +1,6 @@
-/* Deformations that no body can have: families that are turned inside out, and parts that have moved apart by many sizes of the body. They come of
- * motions and loads in a wrong unit; laws and formulations know nothing against them, and energies balance. */
+/* Deformations that no body can have: families that are turned inside out, and parts that have moved apart by many
+ * sizes of the body. They come of motions and loads in a wrong unit; laws and formulations know nothing against them,
+ * and energies balance. */
 #ifndef BRECCIA_SOLVER_DISTORTION_H
 #define BRECCIA_SOLVER_DISTORTION_H
 
@@ -10,7 +11,8 @@
  *  @param[out] first  place of the first of them */
 int64_t distortion_inverted(const Domain *domain, int32_t *first);
 
-/** Fails if particles that still carry load are turned inside out, or if particles with bonds have moved apart by more than 100 sizes of the body.
+/** Fails if particles that still carry load are turned inside out, or if particles with bonds have moved apart by more
+ * than 100 sizes of the body.
  *  @return BRECCIA_OK; BRECCIA_FAILURE after a message */
 int distortion_watch(const Domain *domain, const Clock *clock, Error *error);
 

@@ -147,8 +147,8 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
-/** Returns true if `leaves` strains out suffices for a step in place: explicit_step_back divides the velocity by 1 - c dt / 2, which must
- *  stay away from zero. */
+/** Returns true if `leaves` strains out suffices for a step in place: explicit_step_back divides the velocity by 1 - c
+ * dt / 2, which must stay away from zero. */
 static bool explicit_may_step_in_place(const Explicit *s, bool leaves)
 {
   return leaves && explicit_mass_damping(s) * s->clock->time_step < 1.5;

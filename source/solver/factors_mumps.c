@@ -1,10 +1,12 @@
-/* Factors by MUMPS (Amestoy et al. 2001, SIAM J. Matrix Anal. Appl. 23, 15), the sequential library in double precision.
+/* Factors by MUMPS (Amestoy et al. 2001, SIAM J. Matrix Anal. Appl. 23, 15), the sequential library in double
+ * precision.
  *
- * A symmetric matrix is factored as L D L^T without pivoting first. If D has a negative or zero entry, the matrix is not
- * positive definite and is factored again with pivots of one and two rows. The elimination orders are MUMPS's own, of
- * approximate minimum degree or fill. PORD would end the process if memory is refused, and orders of Scotch differ from
- * run to run. MUMPS keeps state in its modules: a lock lets one thread call it at a time. It reports large allocations that
- * are refused, and crashes at some small ones: each phase begins only if the system has what the phase needs. */
+ * A symmetric matrix is factored as L D L^T without pivoting first. If D has a negative or zero entry, the matrix is
+ * not positive definite and is factored again with pivots of one and two rows. The elimination orders are MUMPS's own,
+ * of approximate minimum degree or fill. PORD would end the process if memory is refused, and orders of Scotch differ
+ * from run to run. MUMPS keeps state in its modules: a lock lets one thread call it at a time. It reports large
+ * allocations that are refused, and crashes at some small ones: each phase begins only if the system has what the phase
+ * needs. */
 #include "solver/factors.h"
 
 #include "base/library_threads.h"

@@ -1,5 +1,5 @@
-/* Factors by SuiteSparse, in builds with BRECCIA_SUITESPARSE: a symmetric and positive definite matrix by CHOLMOD (Chen et
- * al. 2008, ACM Trans. Math. Softw. 35, 22), every other by UMFPACK (Davis 2004, ACM Trans. Math. Softw. 30, 196).
+/* Factors by SuiteSparse, in builds with BRECCIA_SUITESPARSE: a symmetric and positive definite matrix by CHOLMOD (Chen
+ * et al. 2008, ACM Trans. Math. Softw. 35, 22), every other by UMFPACK (Davis 2004, ACM Trans. Math. Softw. 30, 196).
  * Supernodes of CHOLMOD and UMFPACK are under the GPL, and so is a program with them as a whole. */
 #include "solver/factors.h"
 

@@ -185,8 +185,8 @@ int solver_measure(Solver *solver, StepCost *cost, Error *error);
  *  equilibrium.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
-/** Takes over displacements and velocities that a program has written between steps: forces and accelerations follow, and the work that the program
- *  has done is booked as external work.
+/** Takes over displacements and velocities that a program has written between steps: forces and accelerations follow,
+ * and the work that the program has done is booked as external work.
  *  @param[in,out] displacement, velocity  as the last step left them; the former hold its changes afterwards */
 int solver_take_motion(Solver *solver, double *const displacement[MOTIONS], double *const velocity[MOTIONS],
                        Error *error);

@@ -60,8 +60,9 @@ Sums sums_of(const breccia_model *model);
 void assert_balanced(const breccia_model *model, double tolerance);
 /** What a checkpoint would hold; state_copy_destroy frees it. */
 StateCopy state_of(breccia_model *model);
-/** Fails unless a body that `make` makes for a number of threads has the same bits at step `last` with 1, 2 and 5 threads (3 too with BRECCIA_WHOLE), and when what it was at
- *  step `half` is given back to another one. Its run must not end before. */
+/** Fails unless a body that `make` makes for a number of threads has the same bits at step `last` with 1, 2 and 5
+ * threads (3 too with BRECCIA_WHOLE), and when what it was at step `half` is given back to another one. Its run must
+ * not end before. */
 void assert_same_bits_by_threads_and_restart(breccia_model *(*make)(int threads), int64_t half, int64_t last);
 /** Compares every family with all pairs of the body tried one by one. */
 void assert_families_are_all_pairs(const breccia_model *model);

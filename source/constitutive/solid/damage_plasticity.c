@@ -6,8 +6,9 @@
  * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
  *
- * The share r' is that of tension in the principal stresses, or the closing offset over the size of the elastic strain if that is more: stress
- * derives from a free energy, and closed cycles of strain make none (docs/theory.md 8.7, equations 8.1 and 8.2).
+ * The share r' is that of tension in the principal stresses, or the closing offset over the size of the elastic strain
+ * if that is more: stress derives from a free energy, and closed cycles of strain make none (docs/theory.md 8.7,
+ * equations 8.1 and 8.2).
  *
  * The flow keeps the direction of the trial deviator. */
 #include "constitutive/solid/damage_plasticity.h"

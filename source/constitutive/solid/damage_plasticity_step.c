@@ -104,8 +104,9 @@ LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, 
   return dual_product(n, pressed, dual_rest(n, dual_product(n, share, dual_rest(n, pulled))));
 }
 
-/** Finds the share of tension that counts for damage, at least the closing offset over the size of the elastic strain, so that closed cracks carry no more
- *  than what has been put in since they closed: they have the energy E (a - m)^2 / 2 of what damage takes.
+/** Finds the share of tension that counts for damage, at least the closing offset over the size of the elastic strain,
+ * so that closed cracks carry no more than what has been put in since they closed: they have the energy E (a - m)^2 / 2
+ * of what damage takes.
  *  @param[in] sum, q  of effective stress
  *  @param[in] share  of tension in the principal stresses
  *  @param[out] size  a, of the elastic strain: E a^2 / 2 is the energy of C */

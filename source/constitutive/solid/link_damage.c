@@ -1,9 +1,10 @@
 /* Concrete as links that lose their stiffness by stretch (Tuniki 2012, 3.4; docs/theory.md 6.5). Links of micropolar bodies have their damage from the
  * formulation, by `link`. At a point in space the largest principal strain stands for the stretch in tension, and the least one for that in compression:
  *   stress = (1 - D_c) ((1 - D_t) C strain + s D_t (1 - m / a) N),
- * N the stress of a material without tensile strength, a the size of its strain and s the stiffness that closing cracks gain back. The closing offset m keeps
- * 1 - m / a at most q = <pressure - tension> / (pressure + tension) of the principal stresses of C strain, so that a sheared open crack carries nothing, and
- * makes the stress derive from a free energy (docs/theory.md 6.5, equations 6.1 to 6.3). */
+ * N the stress of a material without tensile strength, a the size of its strain and s the stiffness that closing cracks
+ * gain back. The closing offset m keeps 1 - m / a at most q = <pressure - tension> / (pressure + tension) of the
+ * principal stresses of C strain, so that a sheared open crack carries nothing, and makes the stress derive from a free
+ * energy (docs/theory.md 6.5, equations 6.1 to 6.3). */
 #include "constitutive/link_damage.h"
 #include "constitutive/solid/link_law.h"
 

@@ -16,8 +16,9 @@ LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, LinkCurve curve)
   return dual_of(n, lanes_load(value), lanes_load(slope), stretch);
 }
 
-/** Principal stresses of a material without tensile strength (Del Piero 1989): directions open, the most stretched first, until no principal stress is
- *  positive. The stresses are the derivatives of a convex energy, half of their product with the strains.
+/** Principal stresses of a material without tensile strength (Del Piero 1989): directions open, the most stretched
+ * first, until no principal stress is positive. The stresses are the derivatives of a convex energy, half of their
+ * product with the strains.
  *  @param[in] strain  principal strains in descending order
  *  @param[in] effective  principal stresses of C strain */
 LANES_INLINE void find_closed_stress(DualSlopes n, const ClosedModuli *c, const Dual strain[3], const Dual effective[3],
@@ -35,7 +36,8 @@ LANES_INLINE void find_closed_stress(DualSlopes n, const ClosedModuli *c, const 
 
 /** Finds trial damage, and what it leaves of the stresses C strain and of those of closed cracks. The latter is
  *    (1 - D_c) D_t s (a - m) / a,  m = max(min(m committed, a), (1 - q) a),
- *  a the size of the strain of closed cracks and q = <pressure - tension> / (pressure + tension) of the principal stresses of C strain.
+ *  a the size of the strain of closed cracks and q = <pressure - tension> / (pressure + tension) of the principal
+ *  stresses of C strain.
  *  @param[in] strain  principal strains in descending order, the variables 0, 1, 2
  *  @param[out] trial  history
  *  @param[out] rest  factors of C strain and of the closed stresses */

@@ -4,7 +4,8 @@
 
 #include "constitutive/solid/solid_lanes.h"
 
-/** Moduli of principal stresses of closed cracks: E; E / (1 - nu^2) and nu E / (1 - nu^2), where one direction is open; 1 / E. */
+/** Moduli of principal stresses of closed cracks: E; E / (1 - nu^2) and nu E / (1 - nu^2), where one direction is open;
+ * 1 / E. */
 typedef struct ClosedModuli {
   double young, plane, across, by_young;
 } ClosedModuli;

@@ -113,7 +113,8 @@ static void cracks_take_the_fracture_energy_in_the_mean_over_all_directions(void
   }
 }
 
-/** Length of a plane crack by an integral over the distance z of particles from the plane: a family has theta = d s r(z). */
+/** Length of a plane crack by an integral over the distance z of particles from the plane: a family has theta = d s
+ * r(z). */
 static double ordinary_length(const breccia_model *m, const double normal[3])
 {
   enum { STEPS = 20000 };

@@ -335,7 +335,8 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
   forget(&halves);
 }
 
-/** Compares one block of the stiffness of a point, taken at random, with what operator_stiffness() finds for its two places alone. */
+/** Compares one block of the stiffness of a point, taken at random, with what operator_stiffness() finds for its two
+ * places alone. */
 static void check_block(const Operator *point, double *const u[3], const double *stiffness, uint64_t *seed)
 {
   double alone[MOTIONS * MOTIONS], most = 0;
@@ -457,7 +458,8 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
   team_use(before);
 }
 
-/** Returns true for one body of each setting with each law, such that each setting and each law meets each body; for all with BRECCIA_WHOLE. */
+/** Returns true for one body of each setting with each law, such that each setting and each law meets each body; for
+ * all with BRECCIA_WHOLE. */
 static bool body_is_sampled(int setting, int law, int body_number, int bodies)
 {
   return whole_walks() || body_number == (setting + law) % bodies;

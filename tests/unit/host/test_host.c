@@ -661,7 +661,8 @@ static void test_steps_can_be_interrupted(void **state)
   breccia_error_destroy(&error);
 }
 
-/** A grip that a program moves by what it writes takes as much work as one that the deck moves: energies balance, as the work is booked. */
+/** A grip that a program moves by what it writes takes as much work as one that the deck moves: energies balance, as
+ * the work is booked. */
 static void test_the_work_of_a_program_is_booked(void **state)
 {
   (void)state;

@@ -167,7 +167,8 @@ static void a_turned_body_carries_nothing(void **state)
 typedef double Resistance[2][2];
 enum { WAVES = 16 };
 
-/** Returns the number of particles along each side of a plate whose middle particle feels no edge: its force needs the families of its neighbours whole. */
+/** Returns the number of particles along each side of a plate whose middle particle feels no edge: its force needs the
+ * families of its neighbours whole. */
 static int plate_without_edges(double horizon)
 {
   return 2 * (int)ceil(2 * horizon) + 3;
@@ -422,7 +423,8 @@ static void breaking_keeps_its_books(void **state)
   breccia_model_destroy(&m);
 }
 
-/** A notched body of two materials on two lattices, so that there are bonds of slots, single ones, and ones with two points.
+/** A notched body of two materials on two lattices, so that there are bonds of slots, single ones, and ones with two
+ * points.
  *  @param[in] layers  across the plane in space; 0: in the plane */
 static breccia_model *notched_pair(const char *law, const char *keys, int layers)
 {

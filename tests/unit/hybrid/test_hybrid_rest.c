@@ -109,8 +109,8 @@ static bool exceeds(breccia_model *m, int columns, int rows)
 }
 
 /** Even strain without a Poisson ratio, at 0.99 and 1.01 of what theory gives for one bond: its stretch is eps cos^2 + gamma sin cos, across its section are E eps cos^2
- *  and along it E eps sin cos, and with it goes the energy of its point, sigma : eps over two times V_b: V_b is V / (2 + 2 sqrt 2) along an axis and sqrt 2 times that on the
- *  diagonal. Bonds that have not become longer never break. */
+ *  and along it E eps sin cos, and with it goes the energy of its point, sigma : eps over two times V_b: V_b is V / (2
+ *  + 2 sqrt 2) along an axis and sqrt 2 times that on the diagonal. Bonds that have not become longer never break. */
 static void bonds_have_the_limits_of_closed_forms(void **state)
 {
   (void)state;

@@ -1,7 +1,8 @@
-/* Energy that laws give and take in closed loops of strain. A point that was never strained stores nothing, so that the work put into it is at no time
- * negative; and a loop that is gone round again and again leaves the state as it was in the end, so that it takes work. Ilyushin's postulate, that each
- * closed loop of strain takes work, asks more than the second law: a loop may release what hardening has stored. Loops are drawn at random and then changed
- * corner by corner towards those that give most. Bodies are then led round such loops a hundred times. */
+/* Energy that laws give and take in closed loops of strain. A point that was never strained stores nothing, so that the
+ * work put into it is at no time negative; and a loop that is gone round again and again leaves the state as it was in
+ * the end, so that it takes work. Ilyushin's postulate, that each closed loop of strain takes work, asks more than the
+ * second law: a loop may release what hardening has stored. Loops are drawn at random and then changed corner by corner
+ * towards those that give most. Bodies are then led round such loops a hundred times. */
 #include "sample_laws.h"
 
 #include "base/random.h"
@@ -25,7 +26,8 @@ typedef struct Subject {
   double allowed;
 } Subject;
 
-/** A loop of strain after a history: straight lines from corner to corner, the first of which is the last of the history. */
+/** A loop of strain after a history: straight lines from corner to corner, the first of which is the last of the
+ * history. */
 typedef struct Loop {
   int corners;
   double before[HISTORY][6], corner[MOST_CORNERS][6], time; /* of an edge */
@@ -176,7 +178,8 @@ static double power(const Walker *w, const double stress[6])
   return sum;
 }
 
-/** The work from a share of the edge to another: Simpson's rule where it agrees with the trapezium rule, otherwise half by half.
+/** The work from a share of the edge to another: Simpson's rule where it agrees with the trapezium rule, otherwise half
+ * by half.
  *  @param[in] power_from  at the first share @return the power at the second one */
 static double walker_go(Walker *w, double low, double high, double power_from, int depth)
 {
@@ -308,7 +311,8 @@ static void tell_loop(const Loop *l)
   }
 }
 
-/** Searches loops with few and with many corners, and fails where one gives more than the law may. @return the largest gain */
+/** Searches loops with few and with many corners, and fails where one gives more than the law may.
+ *  @return the largest gain */
 static double judge(const Subject *s)
 {
   double most = 0;
@@ -386,8 +390,8 @@ static void the_search_finds_the_gain_of_the_published_recovery(void **state)
 
 /* ---- bodies ---- */
 
-/** Leads a square body round a loop of strain: it is drawn open along y, pressed along x, closed and released, a hundred times. Kinetic and stored energy are
- *  at no time above the work of the supports, and late turns take work. */
+/** Leads a square body round a loop of strain: it is drawn open along y, pressed along x, closed and released, a
+ * hundred times. Kinetic and stored energy are at no time above the work of the supports, and late turns take work. */
 static void turn_a_body(const char *law, const char *body, const char *formulation)
 {
   enum { CYCLES = 100, LOOKS = 10 };

@@ -498,7 +498,8 @@ static void concrete_obeys(const Step *s, void *data)
   }
   SMALL(s, "plastic strain in tension", in_tension - s->before[6] - grown[0], 1e-3);
   SMALL(s, "plastic strain in compression", in_compression - s->before[7] - grown[1], 1e-3);
-  /* Stress that damage has taken comes back with the size of the elastic strain beyond the offset, and never more of it than is not tension. */
+  /* Stress that damage has taken comes back with the size of the elastic strain beyond the offset, and never more of it
+   * than is not tension. */
   const double young = 9 * s->m->bulk * s->m->shear / (3 * s->m->bulk + s->m->shear),
                strain_size = sqrt(fmax(0, dot(elastic, effective)) / young), before = s->before[9],
                counted = c->by_share ? share : fmax(share, strain_size > before ? before / strain_size : 1);

@@ -26,8 +26,8 @@ static double left_by_two_lines(const Stretches *c, double most)
   return low;
 }
 
-/** Principal stresses of a material without tensile strength: of the eight choices of open directions the one whose stresses are nowhere positive and whose
- *  openings are nowhere negative. */
+/** Principal stresses of a material without tensile strength: of the eight choices of open directions the one whose
+ * stresses are nowhere positive and whose openings are nowhere negative. */
 static void find_closed(const Material *m, const double strain[3], double stress[3])
 {
   const double lambda = m->bulk - 2 * m->shear / 3,

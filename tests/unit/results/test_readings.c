@@ -200,8 +200,8 @@ static void survey_field(const ResultView *view, const char *name, double *least
   }
 }
 
-/** A layer whose strain along z goes from tension at its foot to the same compression at its top: its mean stresses are of both signs, and no two
- *  layers of particles have the same. */
+/** A layer whose strain along z goes from tension at its foot to the same compression at its top: its mean stresses are
+ * of both signs, and no two layers of particles have the same. */
 /** Arrays that a program asks for by name hold the strain and stress of the particles as they stand. */
 static void arrays_by_name_are_those_of_now(void **state)
 {
@@ -493,7 +493,8 @@ static void a_run_that_began_between_two_rows_goes_on(void **state)
   breccia_error_destroy(&error);
 }
 
-/** A body runs against a wall, and what damping leaves of it springs back: it is pressed most before the stop. A force does work in every step. */
+/** A body runs against a wall, and what damping leaves of it springs back: it is pressed most before the stop. A force
+ * does work in every step. */
 static void a_run_taken_up_again_tells_what_one_without_a_stop_does(void **state)
 {
   (void)state;

@@ -222,7 +222,8 @@ static void exchange_bytes(int64_t at, void *bytes, size_t size)
   free(there);
 }
 
-/** Global heaps are metadata without a checksum, in which zeros would let HDF5 walk on the spot for ever, and large sizes read beyond them. */
+/** Global heaps are metadata without a checksum, in which zeros would let HDF5 walk on the spot for ever, and large
+ * sizes read beyond them. */
 static void damaged_heaps_are_refused(void **state)
 {
   (void)state;

@@ -102,8 +102,8 @@ static void beams_between_mirrored_layers_bend_as_beams_do(void **state)
   }
 }
 
-/** Returns the lowest frequency of two layers of one thickness and density, held below and sheared: tan(w H / c_1) tan(w H / c_2) = c_2 / c_1, where 1 is
- *  the lower layer, by continuity of displacement and traction. */
+/** Returns the lowest frequency of two layers of one thickness and density, held below and sheared: tan(w H / c_1)
+ * tan(w H / c_2) = c_2 / c_1, where 1 is the lower layer, by continuity of displacement and traction. */
 static double frequency_of_layers(double thickness, double density, double lower, double upper)
 {
   const double below = sqrt(lower / density), above = sqrt(upper / density);
@@ -118,7 +118,8 @@ static double frequency_of_layers(double thickness, double density, double lower
 static void layers_of_unlike_stiffness_vibrate_as_in_closed_form(void **state)
 {
   (void)state;
-  /* Of one stiffness the error is that of the lattice; the others stand for a shift of the interface by at most 0.15 spacings. */
+  /* Of one stiffness the error is that of the lattice; the others stand for a shift of the interface by at most 0.15
+   * spacings. */
   const struct {
     double lower, upper, most;
   } cases[] = {{3e4, 3e4, 1e-3}, {3e4, 1.5e4, 1e-3}, {3e4, 3e3, 4e-3}, {3e3, 3e4, 4e-3}};

@@ -391,8 +391,8 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
   assert_int_equal(system(command), 0);
 }
 
-/** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance; and a bar of steel that is drawn to hundreds
- *  of its lengths goes on to flow. Neither is a result. */
+/** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance; and a bar
+ * of steel that is drawn to hundreds of its lengths goes on to flow. Neither is a result. */
 static void bodies_that_no_body_can_become_stop_the_run(void **state)
 {
   (void)state;

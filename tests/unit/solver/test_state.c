@@ -392,8 +392,9 @@ static void try_steps_in_place(const char *solve)
   breccia_model_destroy(&apart);
 }
 
-/** Steps that leave strains and stresses out are taken in place, to the same bits, and a step that fails gives back the motion with which it began, but for
- *  round-off; also where damping is 2 / dt, so that the velocity in the middle of a step says nothing of that at its beginning. */
+/** Steps that leave strains and stresses out are taken in place, to the same bits, and a step that fails gives back the
+ * motion with which it began, but for round-off; also where damping is 2 / dt, so that the velocity in the middle of a
+ * step says nothing of that at its beginning. */
 static void steps_in_place_lead_to_the_same_bits(void **state)
 {
   (void)state;

@@ -27,8 +27,8 @@ static bool has_entry(int row, int column)
 }
 
 /** Makes a sample. POSITIVE: diagonally dominant. NEGATIVE: with every third diagonal entry negative. INDEFINITE: small
- *  diagonal entries, every third of which is zero. UNSYMMETRIC: other values beyond the diagonal. SINGULAR: the first row
- *  and column are zero. */
+ *  diagonal entries, every third of which is zero. UNSYMMETRIC: other values beyond the diagonal. SINGULAR: the first
+ *  row and column are zero. */
 static Sample *sample_make(SampleKind kind, uint64_t seed)
 {
   Sample *s = calloc(1, sizeof *s);
@@ -219,7 +219,8 @@ static size_t address_space(void)
   return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/** Factors a full matrix and solves with it. Factors of 700 rows take 2 to 12 MB. @param[in] more  memory left, in bytes; 0: all */
+/** Factors a full matrix and solves with it. Factors of 700 rows take 2 to 12 MB.
+ *  @param[in] more  memory left, in bytes; 0: all */
 static int factor_full(int64_t size, size_t more, Error *error)
 {
   int64_t *first = malloc(sizeof *first * (size_t)(size + 1)), *column = malloc(sizeof *column * (size_t)(size * size));
@@ -243,7 +244,8 @@ static int factor_full(int64_t size, size_t more, Error *error)
   return status;
 }
 
-/** Where less and less memory is left, in a process of its own each. @return 0: solved; 1: told that memory is out, 2: by the library, too */
+/** Where less and less memory is left, in a process of its own each.
+ *  @return 0: solved; 1: told that memory is out, 2: by the library, too */
 static int factor_with_less(size_t more)
 {
   const pid_t child = fork();
