@@ -19,8 +19,17 @@ LaneKind lane_kind(void);
 #define LANES_NAMED(name) name##_all
 #endif
 
-/* Makes name_chosen(), which gives the address of what a file that is compiled for all kinds calls LANES_NAMED(name). */
-#ifdef BRECCIA_LANE_KINDS
+/* Makes name_chosen(), which gives the address of what a file that is compiled for all kinds calls LANES_NAMED(name).
+ * BRECCIA_LANE_KINDS is the number of kinds besides the plain one. */
+#if BRECCIA_LANE_KINDS == 1
+#define LANES_CHOICE(type, name)                                                                                       \
+  extern type name##_all, name##_avx2;                                                                                 \
+  static inline type *name##_chosen(void)                                                                              \
+  {                                                                                                                    \
+    static type *const of[] = {&name##_all, &name##_avx2};                                                             \
+    return of[lane_kind()];                                                                                            \
+  }
+#elif BRECCIA_LANE_KINDS == 2
 #define LANES_CHOICE(type, name)                                                                                       \
   extern type name##_all, name##_avx2, name##_avx512;                                                                  \
   static inline type *name##_chosen(void)                                                                              \

@@ -19,7 +19,7 @@ static void build_page_lanes(Text *page)
 {
   text_add(page, "vector lanes: %s", lane_names[LANES_OF_ALL]);
 #ifdef BRECCIA_LANE_KINDS
-  for (int k = LANES_OF_AVX2; k <= LANES_OF_AVX512; ++k) text_add(page, ", %s", lane_names[k]);
+  for (int k = 1; k <= BRECCIA_LANE_KINDS; ++k) text_add(page, ", %s", lane_names[k]);
 #endif
   text_add(page, "; on this processor: %s\n", lane_names[lane_kind()]);
 }
