@@ -28,11 +28,11 @@ demo-opensees: setup all
 examples: all
 	@python3 -B scripts/examples.py $(if $(STRICT),--strict) . build/release build/examples $(EXAMPLES)
 
-# All tests, or those of some matters (folders of tests/unit, and the scripts that go with them) or of some names: `make test TESTS="laws restart"`.
-# Builds what these need, runs them, and prints the ten that took longest.
+# Most tests, some minutes; all tests: `make test ALL=1`; those of some matters (folders of tests/unit, and the scripts that go with them) or of some
+# names: `make test TESTS="laws restart"`. Builds what these need, runs them, and prints the ten that took longest.
 test:
 	@sh scripts/setup.sh test
-	@sh scripts/tests.sh test $(TESTS)
+	@ALL=$(ALL) sh scripts/tests.sh test $(TESTS)
 
 # Other people's programs from the Python index, in an environment of the project's own.
 test-external:
@@ -93,10 +93,10 @@ format:
 check-format:
 	@clang-format --dry-run --Werror $$(git ls-files '*.c' '*.h')
 
-# The whole suite under the address and undefined-behaviour sanitizers.
+# Most tests, or with ALL=1 all, under the address and undefined-behaviour sanitizers.
 asan:
 	@sh scripts/setup.sh test
-	@SAMPLE=$(SAMPLE) sh scripts/tests.sh asan-ubsan $(TESTS)
+	@ALL=$(ALL) sh scripts/tests.sh asan-ubsan $(TESTS)
 
 # Every pair of levels of the factors of tests/relations/pair_decks.py; `make pairs PAIRS="--all --only WORDS"`: decks of some levels.
 pairs:
@@ -120,7 +120,7 @@ arm64:
 
 # Builds the program and runs all tests on Debian 13, in a system of its own (scripts/debian13.sh); needs root or sudo.
 debian13:
-	@sh scripts/debian13.sh make test TESTS="$(TESTS)"
+	@sh scripts/debian13.sh make test ALL=1 TESTS="$(TESTS)"
 
 coverage:
 	@sh scripts/setup.sh test

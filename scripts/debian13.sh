@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs `make test` or the given command on Debian 13, in a system that mmdebstrap makes once in build/debian13-system.
+# Runs all tests or the given command on Debian 13, in a system that mmdebstrap makes once in build/debian13-system.
 # The working tree is mounted at /breccia of that system and build/debian13 at /breccia/build, so that other builds in
 # build/ remain untouched. All mounts and processes belong to private namespaces, which end with the command. A second run
 # at the same time is refused, as it would replace libraries and delete temporary files of the first.
@@ -22,7 +22,7 @@ if [ ! -e "$system/complete" ]; then
   $root touch "$system/complete"
 fi
 mkdir -p build/debian13
-[ $# -gt 0 ] || set -- make test
+[ $# -gt 0 ] || set -- make test ALL=1
 
 # In the namespaces, the shell mounts the file systems that programs expect and installs missing packages as root.
 # The command itself runs as the calling user.
