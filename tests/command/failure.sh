@@ -30,6 +30,12 @@ bracket one | awk '{exit !($1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.9 + 1e-3)
 equal "a bar that is pushed: status" $? 0
 equal "a bar that is pushed" "$(sed -n 's/^fails between -\([0-9.]*\)[^(]* and -\([0-9.]*\).*/\1 \2/p' pushed.out)" "$(bracket one)"
 equal "loads of a bar that is pushed" "$(tail -n +2 pushed/failure.csv | cut -d, -f1,2)" "$(tail -n +2 bar-failure/failure.csv | cut -d, -f1,2 | sed 's/^/-/')"
+# A pull that grows, falls and grows again with the load: the bar fails from 87.5 kN on, bears 150 kN and fails under 200 kN.
+sed 's/force: \["${pull}"/force: ["${max(50 kN, 150 kN - 4 * abs(pull - 100 kN), 4 * (pull - 150 kN))}"/' bar.yaml > again.yaml
+"$breccia" failure again.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 > out 2> errors
+equal "a bar that bears again: status" $? 0
+bracket out | awk '{exit !($1 > 75 && $1 <= 87.501 && $2 >= 87.499 && $2 < 97)}' || fail "a bar that bears again: $(cat out errors)"
+grep -q '^it also bears 150 kN, above a load under which it fails' out || fail "the load above: $(cat out errors)"
 # Concrete as a lattice of beams, pulled by a ramp of two periods and held for one more: 360 N a particle (Tuniki 2012, Table 4.1).
 cat > plate.yaml <<'Y'
 variables: {load: 300 N, period: 0.66 ms}
