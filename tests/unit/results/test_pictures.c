@@ -124,6 +124,29 @@ static void colour_bars_end_where_they_should(void **state)
   }
 }
 
+/** Values of equal size and either sign are equally light, whichever end of the bar is farther from zero, and the farther
+ *  end has the darkest colour. */
+static void one_scale_holds_for_both_signs(void **state)
+{
+  (void)state;
+  const double ends[][2] = {{-30, 10}, {-10, 30}, {-30, 30}};
+  for (size_t k = 0; k < sizeof ends / sizeof *ends; ++k) {
+    const Scene scene = {.range = {ends[k][0], ends[k][1], true}};
+    const double far = fabs(ends[k][0]) > ends[k][1] ? -1 : 1;
+    double last = 100, rgb[3], other[3];
+    for (int n = 1; n <= 30; ++n) {
+      scene_colour(&scene, far * n, rgb);
+      if (!(lightness(rgb) < last)) fail_msg("%g to %g: %g is no darker", ends[k][0], ends[k][1], far * n);
+      last = lightness(rgb);
+      if (n > 10) continue;
+      scene_colour(&scene, -far * n, other);
+      assert_near(lightness(other), last, 2);
+    }
+    colour_diverging(far, other);
+    for (int c = 0; c < 3; ++c) assert_near(rgb[c], other[c], 1e-12);
+  }
+}
+
 static void units_read_well(void **state)
 {
   (void)state;
@@ -691,6 +714,7 @@ int main(void)
       cmocka_unit_test(diverging_colours_are_equally_light_on_both_sides_of_zero),
       cmocka_unit_test(ticks_are_one_two_or_five_times_a_power_of_ten),
       cmocka_unit_test(colour_bars_end_where_they_should),
+      cmocka_unit_test(one_scale_holds_for_both_signs),
       cmocka_unit_test(units_read_well),
       cmocka_unit_test(a_closed_file_may_be_closed_again),
       cmocka_unit_test(all_times_of_a_field_have_one_colour_bar_and_one_framing),

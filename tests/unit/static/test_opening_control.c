@@ -92,6 +92,33 @@ static void what_is_controlled_counts_from_where_displacements_do(void **state)
   }
 }
 
+/** The peak of a factor is the largest one that was found, with its sign, also after the body has been unloaded. */
+static void the_peak_of_a_factor_that_is_found_has_its_sign(void **state)
+{
+  (void)state;
+  for (int sign = -1; sign <= 1; sign += 2) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {formulation: correspondence, space: plane stress, strain: small}\n"
+        "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, traction: [1, 0], "
+        "history: {controlled: yes}}]\n"
+        "solve: [{static: &s {increments: 2, control: &c {displacement of: {face: x+, layers: 1}, direction: [1, 0], "
+        "to: %g}}}, {static: {<<: *s, control: {<<: *c, to: %g}}}]\n",
+        sign * 3e-3, sign * 1e-3);
+    const History *history = &m->loading.loads[1].history;
+    step(m, 2);
+    const double most = factor_of(m);
+    assert_true(sign * most > 1);
+    assert_true(history_peak(history, 1) == most);
+    step(m, INT64_MAX);
+    assert_true(fabs(factor_of(m) - most / 3) < 1e-6 * fabs(most));
+    assert_true(history_peak(history, 2) == most);
+    breccia_model_destroy(&m);
+  }
+}
+
 /* Much longer than E G_F / f_t^2, with a weaker part in which all bonds reach their strength at once but for a row that is
  * cut: roundings alone would decide which of two sections that are alike cracks, and some ways come to where none goes on. */
 static const double uncut = 0.04;
@@ -392,6 +419,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_controlled_counts_from_where_displacements_do),
       cmocka_unit_test(a_factor_that_is_found_is_that_which_would_be_given),
+      cmocka_unit_test(the_peak_of_a_factor_that_is_found_has_its_sign),
       cmocka_unit_test(elastic_bodies_are_opened_without_end),
       cmocka_unit_test(what_controls_nothing_is_refused),
       cmocka_unit_test(a_torn_body_ends_the_stage),
