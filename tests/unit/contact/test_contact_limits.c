@@ -94,6 +94,37 @@ static void the_stable_step_holds_when_faces_press(void **state)
   if (!under_sanitizers()) assert_true(most > 0.7); /* nor is it much too short */
 }
 
+/** Faces of unlike spacing press like a layer of both: by the stiffness times Young's modulus and the gap over the mean spacing. */
+static void unlike_spacings_press_like_a_layer_of_both(void **state)
+{
+  (void)state;
+  for (int fine = 0; fine < 2; ++fine) { /* the first body, or the second */
+    breccia_model *m =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, model: " FIBRE "}}\n"
+                 "peridynamics: {formulation: bond-based, space: plane strain, horizon: 0.04}\n"
+                 "body:\n  a: {material: m, lattice: square, thickness: 0.1, spacing: %s}}\n"
+                 "  b: {material: m, lattice: square, thickness: 0.1, spacing: %s}}\ncontact: {}\n"
+                 "solve: {explicit: {steps: 1000000}}\n",
+                 fine ? "0.01, shape: {box: {particles: [8, 8], first particle: [0.055, 0.005]}"
+                      : "0.02, shape: {box: {particles: [10, 4], first particle: [0.01, 0.01]}",
+                 fine ? "0.02, shape: {box: {particles: [10, 4], first particle: [0.01, 0.18]}"
+                      : "0.01, shape: {box: {particles: [8, 8], first particle: [0.055, 0.175]}");
+    const Particles *p = m->domain.particles;
+    const double rest = 0.015, gap = 0.01 * rest;
+    lower(m, 1, space_between(m, 1) - 1.01 * rest, true);
+    lower(m, 1, 0.01 * rest + gap, false);
+    double force = 0;
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      if (p->block[i / SLICE]) force += p->volume[i] * p->internal[1][i];
+    }
+    const Contact *c = contact_of(m);
+    const double pressed = c->spec->stiffness * c->young[0] * gap / 0.015 * 0.08 * 0.1;
+    assert_near(force, pressed, 1e-3 * pressed);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Bodies fly at each other along the last axis, each with this speed. */
 static void fly(const breccia_model *model, int axis, double speed)
 {
@@ -264,6 +295,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_stable_step_holds_when_faces_press),
       cmocka_unit_test(a_run_that_gains_a_fifth_through_contact_is_stopped),
+      cmocka_unit_test(unlike_spacings_press_like_a_layer_of_both),
       cmocka_unit_test(friction_restarts_to_the_same_bits),
       cmocka_unit_test(bodies_in_contact_that_rotate_feel_no_friction),
       cmocka_unit_test(corners_of_other_lattices_meet_and_keep_their_books),

@@ -217,14 +217,10 @@ static void partial_trials_keep_the_state_of_the_others(void **state)
   end();
 }
 
-/** Takes up the points of a session from a checkpoint at this commit, as of a server that saves nothing.
- *  @return what a client then is told of, or "" if it has them */
-static const char *take_up(Remote **remote, uint32_t session, double commit)
+/** Opens the servers of a bar that yields. */
+static Remote *open_steel(Error *error)
 {
-  static char words[500];
-  Error *error = breccia_error_create();
-  const double identity[IDENTITY] = {session, commit};
-  const int64_t starts[2] = {0, 2};
+  Remote *remote = NULL;
   const char *addresses[1] = {where};
   const RemoteSpec wishes = {.material = "steel",
                              .command = strchr(steel, ' ') + 1,
@@ -235,12 +231,22 @@ static const char *take_up(Remote **remote, uint32_t session, double commit)
                              .stress_unit = 1,
                              .units = {"m", "N", "s"},
                              .length = NAN};
-  int status = remote_open(remote, &wishes, error);
-  if (!status) {
-    (*remote)->saves = false;
-    (*remote)->state = 0;
-    status = remote_resume(*remote, starts, NULL, identity, error);
-  }
+  if (remote_open(&remote, &wishes, error)) fail_msg("%s", breccia_error_text(error));
+  return remote;
+}
+
+/** Takes up the points of a session from a checkpoint at this commit, as of a server that saves nothing.
+ *  @return what a client then is told of, or "" if it has them */
+static const char *take_up(Remote **remote, uint32_t session, double commit)
+{
+  static char words[500];
+  Error *error = breccia_error_create();
+  const double identity[IDENTITY] = {session, commit};
+  const int64_t starts[2] = {0, 2};
+  *remote = open_steel(error);
+  (*remote)->saves = false;
+  (*remote)->state = 0;
+  const int status = remote_resume(*remote, starts, NULL, identity, error);
   snprintf(words, sizeof words, "%s", status ? breccia_error_text(error) : "");
   breccia_error_destroy(&error);
   return words;
@@ -287,6 +293,51 @@ static void a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind(
     }
     remote_close(&remote);
   }
+  end();
+}
+
+/** Plastic strain of a point: each has its own. */
+static double plastic_strain(int point)
+{
+  return (1 + 1e-3 * point) * YIELD_STRAIN;
+}
+
+/** Draws each point to so many yield strains beyond its plastic strain. @return their stresses */
+static const double *pull_all(Remote *remote, int count, double beyond)
+{
+  double *strains = remote_strains(remote, 0);
+  int64_t bad;
+  for (int i = 0; i < count; ++i) strains[i] = plastic_strain(i) + beyond * YIELD_STRAIN;
+  remote_post(remote, 0);
+  if (!remote_collect(remote, 0, &bad)) fail_msg("%s", remote_problem(remote));
+  return remote_stresses(remote, 0);
+}
+
+/** Histories of more points than a datagram holds go out and come back in several frames, each point with its own. */
+static void histories_that_fill_many_frames_are_restored(void **state)
+{
+  (void)state;
+  enum { POINTS = 5000 }; /* three frames of a quarter of a datagram */
+  const int64_t starts[2] = {0, POINTS};
+  begin_with((ServeSpec){.address = "udp://127.0.0.1:0"});
+  Error *error = breccia_error_create();
+  double *saved = calloc(POINTS, sizeof *saved), identity[IDENTITY];
+  Remote *remote = open_steel(error);
+  assert_int_equal(remote_state_values(remote), 1);
+  assert_int_equal(remote_begin(remote, starts, error), BRECCIA_OK);
+  pull_all(remote, POINTS, 1);
+  remote_commit(remote);
+  assert_int_equal(remote_identify(remote, identity, error), BRECCIA_OK);
+  assert_int_equal(remote_save(remote, saved, error), BRECCIA_OK);
+  for (int i = 0; i < POINTS; ++i) assert_near(saved[i], plastic_strain(i), 1e-15);
+  remote_close(&remote);
+  remote = open_steel(error);
+  if (remote_resume(remote, starts, saved, identity, error)) fail_msg("%s", breccia_error_text(error));
+  const double *stresses = pull_all(remote, POINTS, -0.5);
+  for (int i = 0; i < POINTS; ++i) assert_near(stresses[i], -0.5 * YIELD_STRESS, 1e-6);
+  remote_close(&remote);
+  free(saved);
+  breccia_error_destroy(&error);
   end();
 }
 
@@ -709,6 +760,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(partial_trials_keep_the_state_of_the_others, end_what_serves),
       cmocka_unit_test_teardown(a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind, end_what_serves),
+      cmocka_unit_test_teardown(histories_that_fill_many_frames_are_restored, end_what_serves),
       cmocka_unit_test_teardown(units_are_those_of_who_asks, end_what_serves),
       cmocka_unit_test_teardown(what_a_server_cannot_do_is_said_and_changes_nothing, end_what_serves),
       cmocka_unit_test_teardown(a_law_is_told_whole_and_saved_and_restored, end_what_serves),
