@@ -572,7 +572,7 @@ static void tedious_equations_go_to_factors(void **state)
 {
   (void)state;
   Problem p = pose(plate(24), 0);
-  p.solver.mass_factor = -3.75e4; /* farther up whether they find the solution hangs on round-off */
+  p.solver.mass_factor = -3.75e4; /* of larger factors round-off decides whether they find the solution */
   begin(&p, "automatic");
   LinearRecord record = solve(&p, 1e-8);
   print_message("minimal residuals: %lld products leave %g\n", (long long)record.iterations, record.residual);
