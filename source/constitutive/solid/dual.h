@@ -59,11 +59,12 @@ LANES_INLINE Dual dual_add(DualSlopes n, Dual x, Dual y)
   return x;
 }
 
-/** x + b y */
+/** Returns x + b y. The product is rounded by itself: where a mask selects the sum, gcc adds under the mask of AVX-512
+ *  and fuses no product with it. */
 LANES_INLINE Dual dual_sum(DualSlopes n, Dual x, double b, Dual y)
 {
-  x.value += lanes_set(b) * y.value;
-  DUAL_EACH(n, k) x.slope[k] += lanes_set(b) * y.slope[k];
+  x.value += lanes_product(lanes_set(b), y.value);
+  DUAL_EACH(n, k) x.slope[k] += lanes_product(lanes_set(b), y.slope[k]);
   return x;
 }
 LANES_INLINE Dual dual_scale(DualSlopes n, double a, Dual x)
