@@ -26,6 +26,32 @@ static inline void constraint_add(const Constraint *constraint, double *const *v
   for (int k = 0; k < 3; ++k)
     if (constraint->direction[k] != 0) v[constraint->row + k][place] += amount * constraint->direction[k];
 }
+/** Returns true if the motion of the n-th particle is free and leads those of a platen. */
+static inline bool constraint_leads(const Constraint *constraint, int64_t n)
+{
+  const Platen *platen = constraint->platen;
+  return platen && (n == platen->leader[0] || (platen->leaders > 1 && n == platen->leader[1]));
+}
+/** The particle that leads the m-th share of a platen. */
+static inline int32_t constraint_leader(const Constraint *constraint, int m)
+{
+  return constraint->load->selection.places[constraint->platen->leader[m]];
+}
+/** Returns the part of the motion of the n-th particle along the direction that follows from motions of other
+ * particles. @param[in] v  rows of motion */
+static inline double constraint_followed(const Constraint *constraint, double *const *v, int64_t n)
+{
+  double sum = 0;
+  if (constraint->images) sum += constraint->share * constraint_along(constraint, v, constraint->images[n]);
+  for (int m = 0; constraint->platen && m < constraint->platen->leaders; ++m)
+    sum += constraint->platen->share[m][n] * constraint_along(constraint, v, constraint_leader(constraint, m));
+  return sum;
+}
+/** Returns true if the motion of particles follows from that of others. */
+static inline bool constraint_follows(const Constraint *constraint)
+{
+  return constraint->images || constraint->platen;
+}
 /** The most that any particle does of it. */
 static inline double constraint_most(const Constraint *constraint)
 {

@@ -14,7 +14,7 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-enum { OTHERS = 5 }; /* keys that all loads have */
+enum { OTHERS = 6 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
     {.key = "name",
@@ -52,6 +52,14 @@ static const Field load_fields[] = {
          "cubic lattices in formulations that can tell (hybrid and correspondence). layers: evenly over the layers of "
          "the face",
      .words = (const char *const[]){"bonds", "layers", NULL}},
+    {.key = "platen",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(LoadSpec, platen),
+     .standard = "",
+     .meaning = "of a motion prescribed in one direction. turning: a rigid plate presses on the particles and turns "
+                "freely about its centre, as on a ball joint, and 'on' moves in the mean: standard for patches that "
+                "move and are narrower than the body. fixed: all particles move alike, and the plate takes a moment",
+     .words = (const char *const[]){"turning", "fixed", NULL}},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \
    .kind = form,                                                                                                       \
@@ -93,6 +101,9 @@ static void check_load(const DeckReader *reader, void *section)
   if (load->spread && k != LOAD_traction && k != LOAD_pressure && k != LOAD_water_pressure)
     node_error(reader->document, section_node(load, "spread"), reader->error,
                "spread: only of a traction, a pressure or a water pressure");
+  if (load->platen && !types[k]->platen)
+    node_error(reader->document, section_node(load, "platen"), reader->error,
+               "platen: only of a prescribed displacement, velocity or acceleration, or of 'along'");
 }
 
 const Section load_section = {

@@ -30,7 +30,7 @@ typedef struct LoadSpec {
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
   double area;
-  const char *spread;
+  const char *spread, *platen;
 } LoadSpec;
 
 extern const Section load_section;
@@ -71,6 +71,17 @@ typedef struct Load {
   void *own; /* what the type keeps */
 } Load;
 
+/** A rigid plate on the particles of a load that turns freely about its centre (loading/platen.h). The motion along the
+ *  direction of the constraint is
+ *    u_i = (1 - sum_m S_im) U + sum_m S_im u_m
+ *  with the prescribed motion U of the centre and the free motions u_m of one leading particle, in space of two. */
+typedef struct Platen {
+  int leaders;
+  int64_t leader[2]; /* index among the particles of the load */
+  double *share[2];  /* [particles of the load] S_im. Owned */
+  double given;      /* acceleration of the centre at the end of the last step */
+} Platen;
+
 /** Motions prescribed to the particles of a load: u . direction = from + value times the history, or its integral, + share of that of
  *  another particle. */
 typedef struct Constraint {
@@ -84,7 +95,8 @@ typedef struct Constraint {
   double largest_part;   /* of their sizes */
   const int32_t *images; /* [particles of the load] places of the others, which take no force from it; NULL: none */
   double share;          /* 1 or -1 */
-  double *moved;         /* [particles of the load] in the step under way; with images only. Owned */
+  double *moved;         /* [particles of the load] in the step under way; with images or a platen only. Owned */
+  Platen *platen;        /* NULL: the particles do not turn. Owned */
 } Constraint;
 
 /** Particles whose motions along an axis are one. */
@@ -143,6 +155,7 @@ struct LoadType {
   bool timeless;   /* it has no history */
   bool lasting;    /* it acts from the first stage to the last */
   bool goes_on;    /* its forces were there before it began */
+  bool platen;     /* a platen may stand between what it prescribes and its particles */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
   void (*destroy)(Load *load);

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/platen.h"
 #include "loading/tie.h"
 #include <math.h>
 #include <stdio.h>
@@ -90,6 +91,7 @@ int loading_create(const LoadMaking *making, const SectionList *loads, const Loa
   }
   if (!status) status = check_lasting(loading, reader);
   if (!status) status = constraints_check(loading, particles, reader);
+  if (!status) status = platens_create(making);
   return status ? status : ties_check(loading, particles, reader);
 }
 
@@ -100,6 +102,7 @@ void loading_destroy(Loading *loading)
     free(loading->constraints[c].from);
     free(loading->constraints[c].moved);
     free(loading->constraints[c].part);
+    platen_destroy(loading->constraints[c].platen);
   }
   free(loading->loads);
   free(loading->constraints);
@@ -119,7 +122,7 @@ static void find_held(const Loading *loading, const Load *load, const Particles 
     if (constraint->row) continue;
     const Selection *a = &load->selection, *b = &constraint->load->selection;
     for (int64_t n = 0, m = 0; n < a->count && m < b->count;) { /* numbers ascend in both */
-      if (a->places[n] == b->places[m]) load->held[n] |= (uint8_t)axes;
+      if (a->places[n] == b->places[m] && !constraint_leads(constraint, m)) load->held[n] |= (uint8_t)axes;
       const bool next = p->number[a->places[n]] <= p->number[b->places[m]];
       n += next;
       m += !next;
@@ -195,10 +198,9 @@ void loading_begin(Loading *loading, Particles *p, double time)
       for (int k = 0; k < 3; ++k) {
         const double *u = p->displacement[constraint->row + k];
         if (constraint->direction[k] == 0) continue;
-        constraint->from[n] +=
-            (u[selection->places[n]] - (constraint->images ? constraint->share * u[constraint->images[n]] : 0)) *
-            constraint->direction[k];
+        constraint->from[n] += u[selection->places[n]] * constraint->direction[k];
       }
+      constraint->from[n] -= constraint_followed(constraint, p->displacement, n);
     }
   }
   take_up_forces(loading, p, time);
@@ -227,6 +229,10 @@ void loading_state(Loading *loading, StateList *list)
   }
   for (int c = 0; c < loading->constraint_count; ++c) {
     const Constraint *constraint = &loading->constraints[c];
+    if (constraint->platen) {
+      snprintf(name, sizeof name, "motion %d accelerates", c);
+      state_add_number(list, name, "acceleration", STATE_TRIED, &constraint->platen->given);
+    }
     if (!constraint->from) continue;
     snprintf(name, sizeof name, "motion %d begins", c);
     state_add(list,
@@ -253,6 +259,10 @@ static void clear_all(const Loading *loading, Particles *p)
     if ((!load->type->force && !load->type->brake && load->type != &tie_load) || !load_acts(loading, load)) continue;
     clear(&load->selection, p);
     clear(&load->other, p);
+  }
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Load *load = loading->constraints[c].load;
+    if (loading->constraints[c].platen && load_acts(loading, load)) clear(&load->selection, p);
   }
 }
 
@@ -284,6 +294,10 @@ void loading_apply(const Loading *loading, Particles *p, double time)
 {
   loading_apply_untied(loading, p, time);
   tie_groups_push(loading->ties, p);
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (constraint->platen && load_acts(loading, constraint->load)) TEAM_SINGLE platen_push(constraint, p, time);
+  }
 }
 
 /** Factor of the strains of a load, 0 where it does not act. */

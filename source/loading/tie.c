@@ -97,6 +97,12 @@ static int check_pairs(const Load *load, const Constraint *held, const uint8_t *
   for (int k = 0; k < 3; ++k) meets |= tie->along[k] && fabs(held->direction[k]) > 1e-9;
   for (int64_t n = 0; meets && n < load->selection.count; ++n) {
     const int32_t a = load->selection.places[n], b = tie->masters[n];
+    if (marked[a] && held->platen)
+      return node_error(reader->document, load->node, reader->error,
+                        "tie: particle %d at [%g, %g, %g] is under a platen that turns, that of the load in line %d; "
+                        "let it be 'platen: fixed', or leave this particle out of the tie",
+                        p->number[a], p->position[0][a], p->position[1][a], p->position[2][a],
+                        held->load->spec->head.node->line);
     if (marked[a] == marked[b]) continue;
     const int32_t bad = marked[a] ? a : b;
     return node_error(reader->document, load->node, reader->error,

@@ -615,6 +615,7 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
   for (int k = 0; k < model->loading.count; ++k) {
     describe_load(model, &model->loading.loads[k], &e, text);
     plausibility_describe_middle(model, &model->loading.loads[k], text);
+    plausibility_describe_platen(model, &model->loading.loads[k], text);
   }
   const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
   text_add(text, "  the run: ");

@@ -1,5 +1,7 @@
-/* What the files of plausibility share: words and units (plausibility_words.c); loads and ground (plausibility_loads.c); blocks and contact
- * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); points beside bodies (plausibility_places.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
+/* What the files of plausibility share: words and units (plausibility_words.c); loads and ground
+ * (plausibility_loads.c); blocks and contact (plausibility_contact.c); supports (plausibility_supports.c); patches that
+ * can turn or not (plausibility_platens.c); bars (plausibility_bars.c); points beside bodies (plausibility_places.c);
+ * pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -43,6 +45,9 @@ double plausibility_wave_speed(const breccia_model *model);
 
 /** Adds a line where a load acts on the particle nearest to a point to which several are: one that is meant for the middle of a body stands beside it. */
 void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text);
+
+/** Adds a line on whether the patch that a load moves or holds in one direction can turn. */
+void plausibility_describe_platen(const breccia_model *model, const Load *load, Text *text);
 
 /** Warns where ground begins under stresses that nothing balances, or that its law does not bear. */
 void plausibility_warn_of_ground(breccia_model *model);

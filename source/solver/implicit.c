@@ -281,8 +281,10 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   const Particles *p = s->domain->particles;
   const int32_t i = constraint->load->selection.places[n];
   return constraint_along(constraint, s->drag, i) +
-         constraint_part(constraint, n) * p->inertia[constraint->row][i] * p->volume[i] *
-             constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
+         p->inertia[constraint->row][i] * p->volume[i] *
+             (constraint_part(constraint, n) *
+                  constraint_acceleration(constraint, run->clock.time, run->clock.time_step) +
+              constraint_followed(constraint, s->acceleration, n));
 }
 
 const SolverType implicit_solver = {.name = "implicit",

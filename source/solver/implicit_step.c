@@ -9,6 +9,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/platen.h"
 #include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
@@ -31,8 +32,8 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
     if (!c->row) r->most = fmax(r->most, fabs(r->rate) * constraint_most(c));
   }
   const int32_t i = c->load->selection.places[n];
-  double wanted = r->rate * constraint_part(c, n) - constraint_along(c, r->velocity, i);
-  if (c->images) wanted += c->share * constraint_along(c, r->velocity, c->images[n]);
+  const double wanted =
+      r->rate * constraint_part(c, n) - constraint_along(c, r->velocity, i) + constraint_followed(c, r->velocity, n);
   constraint_add(c, r->velocity, i, wanted);
 }
 
@@ -103,6 +104,11 @@ static void find_accelerations(Implicit *s)
       s->acceleration[k][one] *= p->density[one] * p->volume[one] / mass;
     }
   }
+  for (int c = 0; c < s->loading->constraint_count; ++c) {
+    const Constraint *constraint = &s->loading->constraints[c];
+    if (constraint->platen && load_acts(s->loading, constraint->load))
+      platen_share_mass(constraint, p, s->acceleration);
+  }
   unknowns_spread(u, NAN, s->acceleration);
 }
 
@@ -111,8 +117,21 @@ static void find_accelerations(Implicit *s)
 static int prepare_forces(void *context, double *const moved[MOTIONS], double time, Error *error)
 {
   Implicit *s = context;
+  s->then = time;
   find_velocities(s, moved, time);
   return find_drag(s, s->velocity, s->drag_then, error);
+}
+
+/** Gives a particle under a platen the acceleration of the plate: its mass is borne by the leaders, and the scheme
+ * makes prescribed motions ring. */
+static void accelerate_with_platen(const Constraint *c, int64_t n, void *context)
+{
+  Implicit *s = context;
+  const int32_t i = c->load->selection.places[n];
+  if (!c->platen) return;
+  constraint_add(c, s->result, i,
+                 constraint_part(c, n) * constraint_acceleration(c, s->then, s->length) +
+                     constraint_followed(c, s->result, n) - constraint_along(c, s->result, i));
 }
 
 /** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
@@ -123,9 +142,12 @@ static double add_forces(void *context, double *const moved[MOTIONS], double *co
   const Unknowns *u = &s->newton.linear.unknowns;
   const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
   for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, moved, k, i);
+  unknowns_each_row(u, accelerate_with_platen, s);
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
-      s->result[k][i] = p->inertia[k][i] * p->volume[i] * acceleration_then(s, moved, k, i);
+      s->result[k][i] *= p->inertia[k][i] * p->volume[i];
       force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
     }
   unknowns_gather(u, s->result);
@@ -155,20 +177,54 @@ typedef struct HeldEnergy {
   double energy;
 } HeldEnergy;
 
-static void add_held(const Constraint *c, int64_t n, void *context)
+static void add_held_at(HeldEnergy *h, const Constraint *c, int32_t i)
 {
-  HeldEnergy *h = context;
-  const int32_t i = c->load->selection.places[n];
   const double rate = constraint_along(c, h->velocity, i);
   h->energy += 0.5 * h->domain->particles->inertia[c->row][i] * h->domain->counted[i] * rate * rate;
 }
 
-/** Kinetic energy of what moves as prescribed. */
+static void add_held(const Constraint *c, int64_t n, void *context)
+{
+  add_held_at(context, c, c->load->selection.places[n]);
+}
+
+/** Calls for each leader of the platens that act. */
+static void each_leader(const Implicit *s, void (*one)(void *context, const Constraint *c, int32_t leader),
+                        void *context)
+{
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *c = &s->loading->constraints[n];
+    for (int m = 0; c->platen && load_acts(s->loading, c->load) && m < c->platen->leaders; ++m)
+      one(context, c, constraint_leader(c, m));
+  }
+}
+
+static void add_held_leader(void *context, const Constraint *c, int32_t leader)
+{
+  add_held_at(context, c, leader);
+}
+
+static void clear_leader(void *context, const Constraint *c, int32_t leader)
+{
+  double *const *f = context;
+  constraint_add(c, f, leader, -constraint_along(c, f, leader));
+}
+
+/** Kinetic energy of what moves as prescribed, and of particles under platens: their turning and their prescribed
+ * motion share it. */
 static double held_energy(const Implicit *s, double *const velocity[MOTIONS])
 {
   HeldEnergy h = {.domain = s->domain, .velocity = velocity};
   unknowns_each_row(&s->newton.linear.unknowns, add_held, &h);
+  each_leader(s, add_held_leader, &h);
   return h.energy;
+}
+
+/** Leaves of forces those on motions that are wholly free. */
+static void gather_free(Implicit *s, double *const force[MOTIONS])
+{
+  unknowns_gather(&s->newton.linear.unknowns, force);
+  each_leader(s, clear_leader, (void *)force);
 }
 
 /** In prescribed directions what changes the kinetic energy and the bonds is booked as external, whatever it is. */
@@ -179,14 +235,14 @@ static void book(Implicit *s)
   double *const *moved = s->newton.moved, bonds = increment_bond_work(&s->increment, moved);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
-  unknowns_gather(u, s->result);
+  gather_free(s, s->result);
   const double damping = 0.5 * unknowns_work(u, s->result, moved);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       s->result[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i] + p->internal[k][i] +
                                         p->external[k][i]) -
                         s->drag[k][i] - s->drag_then[k][i];
-  unknowns_gather(u, s->result);
+  gather_free(s, s->result);
   const double freely = 0.5 * unknowns_work(u, s->result, moved);
   const double kinetic = kinetic_energy(s->domain, s->velocity), held = held_energy(s, s->velocity);
   const double kinetic_before = kinetic_energy(s->domain, p->velocity), held_before = held_energy(s, p->velocity);

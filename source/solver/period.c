@@ -65,7 +65,8 @@ static void add_pull_of_motions(const Search *s)
     if (c->order || c->value == 0 || c->images || !begins(loading, c->load)) continue;
     const double factor = history_factor(&c->load->history, history_rise(&c->load->history));
     for (int64_t at = 0; at < c->load->selection.count; ++at)
-      constraint_add(c, s->motion, c->load->selection.places[at], factor * c->value * constraint_part(c, at));
+      constraint_add(c, s->motion, c->load->selection.places[at],
+                     factor * c->value * (c->platen ? 1 : constraint_part(c, at)));
     moves = true;
   }
   if (!moves) return;

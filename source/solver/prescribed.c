@@ -95,6 +95,7 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
   double dt = s->clock->time_step, c = explicit_mass_damping(s), bond = 0, external = 0, damping = 0, between = 0,
          largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    if (constraint_leads(constraint, k)) continue;
     int32_t i = constraint->load->selection.places[k];
     double half = along(rows.velocity, d, i), a = along(rows.acceleration, d, i), drifted = dt * half;
     double fi = along(rows.internal, d, i), fe = along(rows.external, d, i);
@@ -102,9 +103,11 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
     double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
            off = (rows.from_step ? motion->moved * part_of : from + motion->target * part_of) -
                  along(rows.displacement, d, i);
-    if (constraint->images) off += constraint->share * along(rows.displacement, d, constraint->images[k]);
+    if (constraint_follows(constraint)) {
+      off += constraint_followed(constraint, s->domain->particles->displacement, k);
+      constraint->moved[k] = drifted + off;
+    }
     if (!constraint->row) largest = fmax(largest, fabs(drifted + off));
-    if (constraint->images) constraint->moved[k] = drifted + off;
     double moved = drifted + off, free_work = 0.5 * drifted * counted[i], work = 0.5 * moved * counted[i];
     bond -= fi * (work - free_work);
     damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * free_work;
@@ -168,11 +171,12 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
   const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = explicit_mass_damping(s), external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    if (constraint_leads(constraint, k)) continue;
     int32_t i = constraint->load->selection.places[k];
     double mass = rows.inertia[i] * counted[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
     const double part_of = constraint_part(constraint, k);
-    double moved = constraint->images ? constraint->moved[k] : motion->moved * part_of, rate = motion->rate * part_of;
-    if (constraint->images) rate += constraint->share * along(rows.velocity, d, constraint->images[k]);
+    double moved = constraint_follows(constraint) ? constraint->moved[k] : motion->moved * part_of,
+           rate = motion->rate * part_of + constraint_followed(constraint, s->domain->particles->velocity, k);
     double fi = along(rows.internal, d, i), fe = along(rows.external, d, i), work = 0.5 * moved * counted[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
     damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * work;
@@ -211,7 +215,9 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   const double before = constraint_displacement(constraint, time - dt), now = constraint_displacement(constraint, time),
                after = constraint_displacement(constraint, time + dt);
   const double part = constraint_part(constraint, n);
-  const double acceleration = part * (after - 2 * now + before) / (dt * dt), rate = part * (after - before) / (2 * dt);
+  const double acceleration =
+                   part * (after - 2 * now + before) / (dt * dt) + constraint_followed(constraint, s->acceleration, n),
+               rate = part * (after - before) / (2 * dt) + constraint_followed(constraint, p->velocity, n);
   double drag = 0; /* of stiffness */
   for (int k = 0; k < 3 && s->viscous.time > 0; ++k)
     if (constraint->direction[k] != 0) drag += constraint->direction[k] * s->viscous.drag[constraint->row + k][i];

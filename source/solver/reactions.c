@@ -1,5 +1,6 @@
 #include "solver/reactions.h"
 
+#include "loading/constraint.h"
 #include "solver/unknowns.h"
 #include "solver/vectors.h"
 #include <math.h>
@@ -104,6 +105,15 @@ static bool counts(const Summing *s, const Constraint *c, int32_t i)
   return !s->load || (c->load->spec->name && !strcmp(c->load->spec->name, s->load));
 }
 
+/** Adds a row at a particle and what it mirrors, half way between which its force acts, to the middle of all. */
+static void note_middle(Summing *s, int32_t i, int32_t other)
+{
+  const Particles *p = s->solver->domain->particles;
+  ++s->rows;
+  for (int k = 0; k < 3; ++k)
+    s->middle[k] += (p->position[k][i] + p->displacement[k][i] + p->position[k][other] + p->displacement[k][other]) / 2;
+}
+
 static void note_row(const Constraint *c, int64_t n, void *context)
 {
   Summing *s = context;
@@ -114,9 +124,18 @@ static void note_row(const Constraint *c, int64_t n, void *context)
   if (!counts(s, c, i)) return;
   const int32_t other = c->images ? c->images[n] : i; /* the face is half way to what is mirrored */
   if (other != i && body_outside(&s->solver->domain->body, p->number[other])) return; /* in a corner */
-  ++s->rows;
-  for (int k = 0; k < 3; ++k)
-    s->middle[k] += (p->position[k][i] + p->displacement[k][i] + p->position[k][other] + p->displacement[k][other]) / 2;
+  note_middle(s, i, other);
+}
+
+/** Notes the leaders of platens, which have no row of their own. */
+static void note_leaders(Summing *s)
+{
+  const Loading *loading = s->solver->loading;
+  for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c)
+    for (int m = 0; c->platen && load_acts(loading, c->load) && m < c->platen->leaders; ++m) {
+      const int32_t leader = constraint_leader(c, m);
+      if (counts(s, c, leader)) note_middle(s, leader, leader);
+    }
 }
 
 /** What holds a rotation adds to the moment only. */
@@ -132,22 +151,32 @@ static void add_turning(Summing *s, const Constraint *c, int64_t n)
   }
 }
 
+/** Adds a force along the direction of a constraint, if its particle counts. */
+static void add_along(Summing *s, const Constraint *c, int32_t i, double along)
+{
+  double force[3];
+  if (!counts(s, c, i)) return;
+  for (int k = 0; k < 3; ++k) force[k] = along * c->direction[k];
+  add_force(&s->sum, s->solver->domain->particles, i, force);
+}
+
 /** What balances a particle in one direction is taken off there, so that another row of that direction finds nothing any more. */
 static void add_row(const Constraint *c, int64_t n, void *context)
 {
   Summing *s = context;
   const int32_t i = c->load->selection.places[n];
-  double along = 0, force[3];
+  double along = 0;
   if (c->row) {
     add_turning(s, c, n);
     return;
   }
   for (int k = 0; k < 3; ++k) along -= s->force[k][i] * c->direction[k];
   for (int k = 0; k < 3; ++k) s->force[k][i] += along * c->direction[k];
-  if (!counts(s, c, i)) return;
+  if (!c->platen && !counts(s, c, i)) return;
   if (s->solver->type->inertia && !c->images) along += s->solver->type->inertia(s->solver, c, n);
-  for (int k = 0; k < 3; ++k) force[k] = along * c->direction[k];
-  add_force(&s->sum, s->solver->domain->particles, i, force);
+  add_along(s, c, i, along);
+  for (int m = 0; c->platen && m < c->platen->leaders; ++m) /* a platen takes no moment about its centre */
+    add_along(s, c, constraint_leader(c, m), -c->platen->share[m][n] * along);
 }
 
 Wrench reactions_sum(const Reactions *r, const Solver *solver, const uint8_t *on, const char *load, const double *about)
@@ -155,6 +184,7 @@ Wrench reactions_sum(const Reactions *r, const Solver *solver, const uint8_t *on
   const Unknowns u = unknowns_of(solver->domain, solver->loading);
   Summing s = {.force = r->force, .solver = solver, .on = on, .load = load};
   unknowns_each_row(&u, note_row, &s);
+  note_leaders(&s);
   for (int k = 0; k < 3; ++k) s.sum.about[k] = about ? about[k] : s.rows ? s.middle[k] / (double)s.rows : 0;
   if (is_one_of_several(solver->loading, load))
     add_images(&s.sum, solver->domain, load);

@@ -34,7 +34,8 @@ void unknowns_each_row(const Unknowns *u, void (*one)(const Constraint *constrai
   for (int turn = 0; turn < 2 * count; ++turn) {
     const Constraint *constraint = &u->loading->constraints[turn % count];
     if (!load_acts(u->loading, constraint->load) || (constraint->images != NULL) != (turn >= count)) continue;
-    for (int64_t n = 0; n < constraint->load->selection.count; ++n) one(constraint, n, context);
+    for (int64_t n = 0; n < constraint->load->selection.count; ++n)
+      if (!constraint_leads(constraint, n)) one(constraint, n, context);
   }
 }
 
@@ -53,16 +54,14 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   const int32_t i = c->load->selection.places[n];
   const Particles *p = s->unknowns->domain->particles;
   double *const *u = p->displacement;
-  double wanted = 0;
-  if (c->images) wanted = c->share * constraint_along(c, s->v, c->images[n]);
+  double wanted = constraint_followed(c, s->v, n);
   if (s->controlled && history_is_controlled(&c->load->history)) wanted += c->value * constraint_part(c, n);
   const bool from_step = c->row && p->orientation[0]; /* rotations in space count from the beginning of the step */
   if (!isnan(s->time) && from_step)
     wanted += constraint_change(c, domain_step_begin(s->unknowns->domain), s->time) * constraint_part(c, n);
   else if (!isnan(s->time))
     wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + (c->from ? c->from[n] : 0);
-  if (!isnan(s->time)) wanted -= constraint_along(c, u, i);
-  if (!isnan(s->time) && c->images) wanted += c->share * constraint_along(c, u, c->images[n]);
+  if (!isnan(s->time)) wanted += constraint_followed(c, u, n) - constraint_along(c, u, i);
   constraint_add(c, s->v, i, wanted - constraint_along(c, s->v, i));
 }
 
@@ -98,6 +97,16 @@ static void clear_row(const Constraint *c, int64_t n, void *context)
   constraint_add(c, v, i, -constraint_along(c, v, i));
 }
 
+/** Adds the force on a particle of a platen to those on its leaders, and clears the force. */
+static void hand_on_row(const Constraint *c, int64_t n, void *context)
+{
+  double *const *f = context;
+  const double along = constraint_along(c, f, c->load->selection.places[n]);
+  for (int m = 0; c->platen && m < c->platen->leaders; ++m)
+    constraint_add(c, f, constraint_leader(c, m), c->platen->share[m][n] * along);
+  clear_row(c, n, context);
+}
+
 /** Ties hand on what all particles of a group get, or nothing. */
 static void close_ties(const Unknowns *u, double *const f[MOTIONS], bool hand_on)
 {
@@ -115,7 +124,7 @@ static void close_ties(const Unknowns *u, double *const f[MOTIONS], bool hand_on
 
 void unknowns_gather(const Unknowns *u, double *const f[MOTIONS])
 {
-  unknowns_each_row(u, clear_row, (void *)f);
+  unknowns_each_row(u, hand_on_row, (void *)f);
   close_ties(u, f, true);
   clear_flat(u, f);
 }

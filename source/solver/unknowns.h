@@ -1,11 +1,14 @@
 /* Which displacements are free in a stage, for solvers that solve for them.
  *
- * Vectors are arrays over places, a row of each motion, as displacements are. Prescribed motions, ties and the space of the body make rows that say how some
- * changes of displacements follow from others: v = T q + g. T is never made: `unknowns_spread` is T and `unknowns_gather` its transpose, both in
- * place. A vector of unknowns q is 0 wherever a displacement is not free. Of a particle that is held in a direction along no axis what is left of
- * the vector in the plane across it is free. Where forces are compared with forces or motions with motions, a rotation counts as the displacement that it
- * makes at the particle's radius of gyration, so that nothing depends on the unit of length. Ties have their unknown at the first particle of each group. Mirror images outside a support move with
- * particles inside and take no part in their equilibrium: by symmetry it is that of one half, and their forces are dropped, not handed on. */
+ * Vectors are arrays over places, a row of each motion, as displacements are. Prescribed motions, ties and the space of
+ * the body make rows that say how some changes of displacements follow from others: v = T q + g. T is never made:
+ * `unknowns_spread` is T and `unknowns_gather` its transpose, both in place. A vector of unknowns q is 0 wherever a
+ * displacement is not free. Of a particle that is held in a direction along no axis what is left of the vector in the
+ * plane across it is free. Where forces are compared with forces or motions with motions, a rotation counts as the
+ * displacement that it makes at the particle's radius of gyration, so that nothing depends on the unit of length. Ties
+ * have their unknown at the first particle of each group, platens at their leaders (loading/platen.h). Mirror images
+ * outside a support move with particles inside and take no part in their equilibrium: by symmetry it is that of one
+ * half, and their forces are dropped, not handed on. */
 #ifndef BRECCIA_SOLVER_UNKNOWNS_H
 #define BRECCIA_SOLVER_UNKNOWNS_H
 

@@ -90,4 +90,4 @@ static const char *kind(const LoadValue *value, const char **dimension)
   return kinds[order];
 }
 
-const LoadType along_load = {.create = create, .vector = vector, .magnitude = magnitude, .kind = kind};
+const LoadType along_load = {.platen = true, .create = create, .vector = vector, .magnitude = magnitude, .kind = kind};

@@ -1,5 +1,6 @@
 /* What a motion prescribed in earlier stages exerted on its particles when these ended, carried on as forces, so that something else can take its place:
  * dashpots that cannot hold a weight at rest, or nothing, as where ground is dug away. */
+#include "loading/constraint.h"
 #include "loading/load/load_parts.h"
 
 #include "base/team.h"
@@ -89,6 +90,26 @@ static void destroy(Load *load)
   free(own);
 }
 
+/** Adds a force along the direction of a constraint to the particle of index n of the load. */
+static void add_along(Reaction *own, const Particles *p, const Constraint *c, int64_t n, double along)
+{
+  for (int k = 0; k < 3 && c->row + k < p->motions; ++k) own->force[c->row + k][n] += along * c->direction[k];
+}
+
+/** Adds what the leaders of a platen bear when the force on its n-th particle is `along`: the plate takes no moment
+ * about its centre. */
+static void add_to_leaders(Reaction *own, const Particles *p, const Constraint *c, const Selection *all, int64_t n,
+                           double along)
+{
+  const double volume = p->volume[c->load->selection.places[n]];
+  for (int m = 0; c->platen && m < c->platen->leaders; ++m) {
+    const int32_t leader = constraint_leader(c, m);
+    int64_t at = 0;
+    while (all->places[at] != leader) ++at;
+    add_along(own, p, c, at, -c->platen->share[m][n] * along * volume / p->volume[leader]);
+  }
+}
+
 /** Forces that balance the particles in the directions that were prescribed. */
 static bool begin(Load *load, Particles *p)
 {
@@ -100,11 +121,13 @@ static bool begin(Load *load, Particles *p)
     const Selection *some = &c->load->selection;
     for (int64_t n = 0, m = 0; m < some->count; ++m) {
       const int32_t i = some->places[m];
+      if (constraint_leads(c, m)) continue;
       while (all->places[n] != i) ++n; /* numbers ascend in both */
       double along = 0;
       for (int k = 0; k < 3 && c->row + k < p->motions; ++k)
         along -= (p->internal[c->row + k][i] + p->external[c->row + k][i]) * c->direction[k];
-      for (int k = 0; k < 3 && c->row + k < p->motions; ++k) own->force[c->row + k][n] += along * c->direction[k];
+      add_along(own, p, c, n, along);
+      add_to_leaders(own, p, c, all, m, along);
     }
   }
   return false;

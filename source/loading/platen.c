@@ -1,0 +1,287 @@
+#include "loading/platen.h"
+
+#include "base/memory.h"
+#include "body/body.h"
+#include "loading/constraint.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef double Vector[3];
+
+/** Subtracts the part of a vector along a unit vector. */
+static void platen_project(Vector v, const double unit[3])
+{
+  const double along = v[0] * unit[0] + v[1] * unit[1] + v[2] * unit[2];
+  for (int k = 0; k < 3; ++k) v[k] -= along * unit[k];
+}
+
+static double platen_length(const double v[3])
+{
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/** Finds the centre of the volumes of a selection. */
+static void platen_centre(const Selection *s, const Particles *p, Vector centre)
+{
+  double volume = 0;
+  for (int k = 0; k < 3; ++k) centre[k] = 0;
+  for (int64_t n = 0; n < s->count; ++n) {
+    const int32_t i = s->places[n];
+    volume += p->volume[i];
+    for (int k = 0; k < 3; ++k) centre[k] += p->volume[i] * p->position[k][i];
+  }
+  for (int k = 0; k < 3; ++k) centre[k] /= volume;
+}
+
+/** Finds where the n-th particle stands from the centre, across the direction. */
+static void platen_arm(const Selection *s, const Particles *p, const double centre[3], const double direction[3],
+                       int64_t n, Vector arm)
+{
+  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][s->places[n]] - centre[k];
+  platen_project(arm, direction);
+}
+
+/** Finds the particle that stands farthest from the centre across the direction and, if given, across a second one; of
+ * equal ones the first.
+ *  @param[out] farthest  its arm  @return its index */
+static int64_t platen_farthest(const Selection *s, const Particles *p, const double centre[3],
+                               const double direction[3], const double *second, Vector farthest)
+{
+  const double nearly = 1 + 1e-9;
+  double most = 0;
+  int64_t found = 0;
+  for (int k = 0; k < 3; ++k) farthest[k] = 0;
+  for (int64_t n = 0; n < s->count; ++n) {
+    Vector arm;
+    platen_arm(s, p, centre, direction, n, arm);
+    if (second) platen_project(arm, second);
+    if (!(platen_length(arm) > nearly * most)) continue;
+    most = platen_length(arm);
+    found = n;
+    for (int k = 0; k < 3; ++k) farthest[k] = arm[k];
+  }
+  return found;
+}
+
+double platen_width(const Constraint *c, const Body *body, int axis)
+{
+  const double along = 0.9;
+  const Selection *s = &c->load->selection;
+  const double *at = body->particles.position[axis], spacing = body->coarsest->plane[axis];
+  double low = INFINITY, high = -INFINITY;
+  if (axis >= body->dimensions || fabs(c->direction[axis]) > along) return 0;
+  for (int64_t n = 0; n < s->count; ++n) {
+    low = fmin(low, at[s->places[n]]);
+    high = fmax(high, at[s->places[n]]);
+  }
+  return high - low > 0.1 * spacing ? high - low + spacing : 0;
+}
+
+bool platen_is_narrow(const Constraint *c, const Body *body)
+{
+  const double most = 0.9; /* of the body */
+  for (int k = 0; k < body->dimensions; ++k) {
+    const double width = platen_width(c, body, k);
+    if (width > 0 && width < most * (body->high[k] - body->low[k] + body->coarsest->plane[k])) return true;
+  }
+  return false;
+}
+
+/** Finds the shares of the n-th particle: its arm as a sum of those of the leaders, whose Gram matrix is inverted. */
+static void platen_find_shares(Platen *q, const Selection *s, const Particles *p, const double centre[3],
+                               const double direction[3])
+{
+  Vector lead[2] = {{0}};
+  double gram[2][2] = {{0}};
+  for (int m = 0; m < q->leaders; ++m) platen_arm(s, p, centre, direction, q->leader[m], lead[m]);
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      for (int k = 0; k < 3; ++k) gram[a][b] += lead[a][k] * lead[b][k];
+  const double determinant = q->leaders > 1 ? gram[0][0] * gram[1][1] - gram[0][1] * gram[1][0] : gram[0][0];
+  for (int64_t n = 0; n < s->count; ++n) {
+    Vector arm;
+    double along[2] = {0};
+    platen_arm(s, p, centre, direction, n, arm);
+    for (int m = 0; m < q->leaders; ++m)
+      for (int k = 0; k < 3; ++k) along[m] += arm[k] * lead[m][k];
+    if (q->leaders > 1) {
+      q->share[0][n] = (gram[1][1] * along[0] - gram[0][1] * along[1]) / determinant;
+      q->share[1][n] = (gram[0][0] * along[1] - gram[1][0] * along[0]) / determinant;
+    } else
+      q->share[0][n] = along[0] / determinant;
+  }
+}
+
+/** Puts a platen between a constraint and its particles, if these stand apart across its direction. */
+static int platen_create(Constraint *c, const Body *body, Error *error)
+{
+  const double flat = 1e-6;
+  const Particles *p = &body->particles;
+  const Selection *s = &c->load->selection;
+  Vector centre, first, second;
+  platen_centre(s, p, centre);
+  const int64_t leader = platen_farthest(s, p, centre, c->direction, NULL, first);
+  const double length = platen_length(first);
+  if (!(length > flat * body->coarsest->spacing)) return BRECCIA_OK;
+  Platen *q = c->platen = memory_zeroed(1, sizeof *q, "platens", error);
+  if (!q) return BRECCIA_FAILURE;
+  *q = (Platen){.leaders = 1, .leader = {leader, -1}};
+  for (int k = 0; k < 3; ++k) first[k] /= length;
+  const int64_t other = platen_farthest(s, p, centre, c->direction, first, second);
+  if (platen_length(second) > flat * length) {
+    q->leader[1] = other;
+    q->leaders = 2;
+  }
+  for (int m = 0; m < q->leaders; ++m)
+    if (!(q->share[m] = memory_zeroed((size_t)s->count, sizeof(double), "platens", error))) return BRECCIA_FAILURE;
+  c->part = memory_zeroed((size_t)s->count, sizeof(double), "platens", error);
+  c->moved = memory_zeroed((size_t)s->count, sizeof(double), "platens", error);
+  if (!c->part || !c->moved) return BRECCIA_FAILURE;
+  platen_find_shares(q, s, p, centre, c->direction);
+  for (int64_t n = 0; n < s->count; ++n) {
+    c->part[n] = 1;
+    for (int m = 0; m < q->leaders; ++m) c->part[n] -= q->share[m][n];
+    c->largest_part = fmax(c->largest_part, fabs(c->part[n]));
+  }
+  return BRECCIA_OK;
+}
+
+/** Returns true if another motion is prescribed to one of the particles while this one is. */
+static bool platen_is_held_across(const Loading *loading, const Constraint *c, const Particles *p)
+{
+  const Selection *a = &c->load->selection;
+  for (int other = 0; other < loading->constraint_count; ++other) {
+    const Constraint *held = &loading->constraints[other];
+    const Selection *b = &held->load->selection;
+    if (held == c || held->row || held->load->behind <= c->load->first || c->load->behind <= held->load->first)
+      continue;
+    for (int64_t n = 0, m = 0; n < a->count && m < b->count;) { /* numbers ascend in both */
+      const int32_t one = p->number[a->places[n]], two = p->number[b->places[m]];
+      if (one == two) return true;
+      n += one < two;
+      m += two < one;
+    }
+  }
+  return false;
+}
+
+/** Returns true if one of the particles stands beside its mirror image at a face along the direction. */
+static bool platen_is_mirrored(const Constraint *c, const Body *body)
+{
+  const double beside = 1.5; /* spacings from a particle of the outermost layer to its image */
+  const Selection *s = &c->load->selection;
+  const Particles *p = &body->particles;
+  for (int64_t n = 0; body->margin_of && n < p->count; ++n) {
+    if (!body_outside(body, n)) continue;
+    const int32_t original = p->place_of[body->image_of[n]];
+    const int axis = body->margins.items[body->margin_of[n]].axis;
+    const double apart = fabs(p->position[axis][p->place_of[n]] - p->position[axis][original]);
+    if (fabs(c->direction[axis]) > 0.5 || apart > beside * body->coarsest->plane[axis]) continue;
+    for (int64_t m = 0; m < s->count; ++m)
+      if (s->places[m] == original) return true;
+  }
+  return false;
+}
+
+/** Returns true if a platen is under a load of which the deck does not say so. */
+static bool platen_is_usual(const Loading *loading, const Constraint *c, const Body *body)
+{
+  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) &&
+         !platen_is_held_across(loading, c, &body->particles) && !platen_is_mirrored(c, body);
+}
+
+static int platen_choose(const LoadMaking *making, const Load *load)
+{
+  Loading *loading = making->loading;
+  Constraint *found = NULL;
+  int count = 0;
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    if (loading->constraints[c].load != load) continue;
+    found = &loading->constraints[c];
+    ++count;
+  }
+  const bool wanted = load->spec->platen && !strcmp(load->spec->platen, "turning");
+  if (wanted && count != 1)
+    return node_error(making->reader->document, section_node(load->spec, "platen"), making->reader->error,
+                      "platen: one that turns has its motion prescribed in one direction, and here it is in %d; give "
+                      "the others as 'free', or take 'platen: fixed'",
+                      count);
+  if (count != 1 || !(wanted || platen_is_usual(loading, found, making->body))) return BRECCIA_OK;
+  return platen_create(found, making->body, making->reader->error);
+}
+
+int platens_create(const LoadMaking *making)
+{
+  int status = BRECCIA_OK;
+  for (int l = 0; l < making->loading->count && status != BRECCIA_FAILURE; ++l) {
+    const Load *load = &making->loading->loads[l];
+    const int bad = load->type && load->type->platen ? platen_choose(making, load) : BRECCIA_OK;
+    if (bad) status = bad;
+  }
+  return status;
+}
+
+void platen_destroy(Platen *platen)
+{
+  if (!platen) return;
+  for (int m = 0; m < 2; ++m) free(platen->share[m]);
+  free(platen);
+}
+
+/** Divides generalised forces on the leaders by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
+static void platen_accelerate(const Constraint *c, const Particles *p, const double force[2], double acceleration[2])
+{
+  const Platen *q = c->platen;
+  const Selection *s = &c->load->selection;
+  double mass[2][2] = {{0}};
+  for (int64_t n = 0; n < s->count; ++n) {
+    const double own = p->density[s->places[n]] * p->volume[s->places[n]];
+    for (int a = 0; a < q->leaders; ++a)
+      for (int b = 0; b < q->leaders; ++b) mass[a][b] += own * q->share[a][n] * q->share[b][n];
+  }
+  if (q->leaders == 1) {
+    acceleration[0] = force[0] / mass[0][0];
+    return;
+  }
+  const double determinant = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0];
+  acceleration[0] = (mass[1][1] * force[0] - mass[0][1] * force[1]) / determinant;
+  acceleration[1] = (mass[0][0] * force[1] - mass[1][0] * force[0]) / determinant;
+}
+
+void platen_push(const Constraint *c, Particles *p, double time)
+{
+  Platen *q = c->platen;
+  const Selection *s = &c->load->selection;
+  const double step = 2 * c->load->motion.lag; /* none where forces are found again for a state that was restored */
+  if (step > 0) q->given = constraint_acceleration(c, time, step);
+  double force[2] = {0}, acceleration[2];
+  for (int64_t n = 0; n < s->count; ++n) {
+    const int32_t i = s->places[n];
+    const double along = p->volume[i] * (constraint_along(c, p->internal, i) + constraint_along(c, p->external, i) -
+                                         p->density[i] * c->part[n] * q->given);
+    for (int m = 0; m < q->leaders; ++m) force[m] += q->share[m][n] * along;
+  }
+  platen_accelerate(c, p, force, acceleration);
+  for (int m = 0; m < q->leaders; ++m) {
+    const int32_t i = constraint_leader(c, m);
+    constraint_add(c, p->external, i,
+                   p->density[i] * acceleration[m] - constraint_along(c, p->internal, i) -
+                       constraint_along(c, p->external, i));
+  }
+}
+
+void platen_share_mass(const Constraint *c, const Particles *p, double *const acceleration[MOTIONS])
+{
+  const Platen *q = c->platen;
+  double force[2] = {0}, shared[2];
+  for (int m = 0; m < q->leaders; ++m) {
+    const int32_t i = constraint_leader(c, m);
+    force[m] = p->density[i] * p->volume[i] * constraint_along(c, acceleration, i);
+  }
+  platen_accelerate(c, p, force, shared);
+  for (int m = 0; m < q->leaders; ++m) {
+    const int32_t i = constraint_leader(c, m);
+    constraint_add(c, acceleration, i, shared[m] - constraint_along(c, acceleration, i));
+  }
+}
