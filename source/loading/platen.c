@@ -9,6 +9,8 @@
 
 typedef double Vector[3];
 
+static const double platen_flat = 1e-6; /* spacings by which particles that stand in line across the direction differ */
+
 /** Subtracts the part of a vector along a unit vector. */
 static void platen_project(Vector v, const double unit[3])
 {
@@ -88,6 +90,14 @@ bool platen_is_narrow(const Constraint *c, const Body *body)
   return false;
 }
 
+bool platen_can_turn(const Constraint *c, const Body *body)
+{
+  Vector centre, farthest;
+  platen_centre(&c->load->selection, &body->particles, centre);
+  platen_farthest(&c->load->selection, &body->particles, centre, c->direction, NULL, farthest);
+  return platen_length(farthest) > platen_flat * body->coarsest->spacing;
+}
+
 /** Finds the shares of the n-th particle: its arm as a sum of those of the leaders, whose Gram matrix is inverted. */
 static void platen_find_shares(Platen *q, const Selection *s, const Particles *p, const double centre[3],
                                const double direction[3])
@@ -116,20 +126,19 @@ static void platen_find_shares(Platen *q, const Selection *s, const Particles *p
 /** Puts a platen between a constraint and its particles, if these stand apart across its direction. */
 static int platen_create(Constraint *c, const Body *body, Error *error)
 {
-  const double flat = 1e-6;
   const Particles *p = &body->particles;
   const Selection *s = &c->load->selection;
   Vector centre, first, second;
   platen_centre(s, p, centre);
   const int64_t leader = platen_farthest(s, p, centre, c->direction, NULL, first);
   const double length = platen_length(first);
-  if (!(length > flat * body->coarsest->spacing)) return BRECCIA_OK;
+  if (!platen_can_turn(c, body)) return BRECCIA_OK;
   Platen *q = c->platen = memory_zeroed(1, sizeof *q, "platens", error);
   if (!q) return BRECCIA_FAILURE;
   *q = (Platen){.leaders = 1, .leader = {leader, -1}};
   for (int k = 0; k < 3; ++k) first[k] /= length;
   const int64_t other = platen_farthest(s, p, centre, c->direction, first, second);
-  if (platen_length(second) > flat * length) {
+  if (platen_length(second) > platen_flat * length) {
     q->leader[1] = other;
     q->leaders = 2;
   }
@@ -145,6 +154,36 @@ static int platen_create(Constraint *c, const Body *body, Error *error)
     c->largest_part = fmax(c->largest_part, fabs(c->part[n]));
   }
   return BRECCIA_OK;
+}
+
+static int platen_compare(const void *a, const void *b)
+{
+  const double one = *(const double *)a, other = *(const double *)b;
+  return (one > other) - (one < other);
+}
+
+/** Returns true if the particles stand side by side along an axis: a load of two jacks has a gap between them.
+ *  @param[out] room  [particles of the load] */
+static bool platen_is_one(const Constraint *c, const Body *body, int axis, double *room)
+{
+  const double gap = 1.6; /* spacings from one particle to the next */
+  const Selection *s = &c->load->selection;
+  bool one = true;
+  for (int64_t n = 0; n < s->count; ++n) room[n] = body->particles.position[axis][s->places[n]];
+  qsort(room, (size_t)s->count, sizeof *room, platen_compare);
+  for (int64_t n = 1; n < s->count; ++n) one &= room[n] - room[n - 1] < gap * body->coarsest->spacing;
+  return one;
+}
+
+/** Returns true if the particles are a single patch; false if there is no memory to find out. */
+static bool platen_is_patch(const Constraint *c, const Body *body)
+{
+  double *room = memory_plain((size_t)c->load->selection.count, sizeof *room);
+  bool one = room != NULL;
+  for (int k = 0; k < body->dimensions && one; ++k)
+    if (platen_width(c, body, k) > 0) one = platen_is_one(c, body, k, room);
+  free(room);
+  return one;
 }
 
 /** Returns true if another motion is prescribed to one of the particles while this one is. */
@@ -187,7 +226,7 @@ static bool platen_is_mirrored(const Constraint *c, const Body *body)
 /** Returns true if a platen is under a load of which the deck does not say so. */
 static bool platen_is_usual(const Loading *loading, const Constraint *c, const Body *body)
 {
-  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) &&
+  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) && platen_is_patch(c, body) &&
          !platen_is_held_across(loading, c, &body->particles) && !platen_is_mirrored(c, body);
 }
 

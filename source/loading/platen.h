@@ -13,7 +13,7 @@
 #include "loading/load.h"
 
 /** Puts platens between loads that prescribe a motion in one direction and their particles: where the deck wants one
- * that turns, and where it says nothing and the load moves a patch that is narrower than the body. In the latter case a
+ * that turns, and where it says nothing and the load moves one patch that is narrower than the body. In the latter case a
  * patch stays fixed that lies on a plane of symmetry: some of its particles are held in another direction, or have
  * mirror images beside them.
  *  @return BRECCIA_OK; BRECCIA_USER_ERROR after a message where a platen is wanted and motions in several directions
@@ -24,6 +24,8 @@ void platen_destroy(Platen *platen);
 /** Returns the width along an axis of the patch on which a constraint acts, a spacing more than its particles stand
  * apart; 0 where they stand in one row or the axis is not across the direction. */
 double platen_width(const Constraint *constraint, const Body *body, int axis);
+/** Returns true if the particles of a constraint do not all stand in one line along its direction. */
+bool platen_can_turn(const Constraint *constraint, const Body *body);
 /** Returns true if the patch on which a constraint acts is narrower than the body along any axis across its direction.
  */
 bool platen_is_narrow(const Constraint *constraint, const Body *body);

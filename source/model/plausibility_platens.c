@@ -36,7 +36,7 @@ void plausibility_describe_platen(const breccia_model *model, const Load *load, 
 {
   const Body *body = &model->domain.body;
   const Constraint *c = platens_find(&model->loading, load);
-  if (!c || (c->value == 0 && !platen_is_narrow(c, body))) return;
+  if (!c || !platen_can_turn(c, body) || (c->value == 0 && !platen_is_narrow(c, body))) return;
   Text widths = {0};
   const int line = load->spec->head.node->line;
   if (platens_add_widths(model, c, &widths)) {

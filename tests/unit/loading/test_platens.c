@@ -205,6 +205,14 @@ static bool turns(const char *body, const char *load)
   return found;
 }
 
+#define TWO_JACKS                                                                                                      \
+  MATERIAL                                                                                                             \
+  "body: {b: {material: m, lattice: square, spacing: 10, thickness: 50, shape: {box: {from: [0, 0], to: [400, "        \
+  "80]}}}}\n"                                                                                                          \
+  "peridynamics: {formulation: correspondence, space: plane stress}\n"                                                 \
+  "selections: {jack: {any of: [{nearest: [125, 75]}, {nearest: [275, 75]}]}}\n"                                       \
+  "loads:\n  - {on: {nearest: [5, 5]}, displacement: [0, 0]}\n  - {on: {nearest: [395, 5]}, displacement: [free, "     \
+  "0]}\n"
 #define WHOLE                                                                                                          \
   MATERIAL                                                                                                             \
   "body: {b: {material: m, lattice: square, spacing: 10, thickness: 50, shape: {box: {from: [0, 0], to: [200, "        \
@@ -220,6 +228,8 @@ static void patches_turn_where_nothing_says_that_they_must_not(void **state)
   assert_true(turns(BEAM, "along: {direction: [1, -2], displacement: 0.1}"));
   assert_true(turns(BEAM, "displacement: [free, 0], platen: turning"));
   assert_false(turns(BEAM, "displacement: [free, 0]"));
+  assert_false(turns(TWO_JACKS, "displacement: [free, -0.1]"));
+  assert_true(turns(TWO_JACKS, "displacement: [free, -0.1], platen: turning"));
   assert_false(turns(BEAM, "displacement: [0, -0.1]"));
   assert_false(turns(BEAM, "displacement: [free, -0.1], platen: fixed"));
   /* The whole face; half of a body, whose plane of symmetry is held by particles or by images. */
