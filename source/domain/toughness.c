@@ -91,6 +91,30 @@ static bool toughness_is_told(const Domain *d, int block)
   return false;
 }
 
+/** Adds what a lattice of softening bonds carries in uniaxial tension along its axes and diagonals, and which strength
+ * to give for the one wanted: the largest counts, as too much strength is unsafe. */
+static void toughness_add_strength(const Domain *d, const Region *region, int block, Text *text)
+{
+  static const double directions[][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {1, 1, 1}};
+  const int dimensions = d->body.dimensions;
+  double least = INFINITY, most = 0;
+  if (!region->type->uniaxial_strength || dimensions < 2) return;
+  for (size_t k = 0; k < sizeof directions / sizeof *directions; ++k) {
+    const double *v = directions[k], length = sqrt(v[0] + v[1] + v[2]),
+                 n[3] = {v[0] / length, v[1] / length, v[2] / length};
+    if (dimensions == 2 && v[2] != 0) continue;
+    const double found = region->type->uniaxial_strength(region->formulation, block, n);
+    if (isnan(found)) return;
+    least = fmin(least, found);
+    most = fmax(most, found);
+  }
+  text_add(
+      text,
+      "%s: pulled one way a body carries %.3g to %.3g of the tensile strength of its bonds by the direction; for a "
+      "body of some strength give the bonds at most %.3g of it\n",
+      d->body.blocks[block]->head.name, least, most, 1 / most);
+}
+
 void toughness_describe(const Domain *d, const FailureSpec *failure, const Units *units, Text *text)
 {
   for (int64_t s = 0; s < d->particles->slices; ++s) {
@@ -113,5 +137,6 @@ void toughness_describe(const Domain *d, const FailureSpec *failure, const Units
       continue;
     }
     toughness_add(d, &t, !t.criterion || !isnan(energy), units, text);
+    toughness_add_strength(d, region, block, text);
   }
 }

@@ -312,6 +312,7 @@ const FormulationType formulation_bond_based = {
     .stress = stress,
     .characteristic_length = bond_characteristic_length,
     .crack_length = bond_crack_length,
+    .uniaxial_strength = bond_uniaxial_strength,
     .critical_stretch = bond_critical_stretch,
     .shown_young = bond_shown_young,
     .describe = bond_describe,

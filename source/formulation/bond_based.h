@@ -122,6 +122,8 @@ double bond_shown_young(const void *formulation, int block, int axis);
 double bond_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 double bond_characteristic_length(const BondLength *of);
 double bond_crack_length(const void *formulation, int block, const double normal[3]);
+/** FormulationType.uniaxial_strength (bond_strength.c). */
+double bond_uniaxial_strength(const void *formulation, int block, const double direction[3]);
 double bond_critical_stretch(const BondLength *of, const Material *material, double energy);
 void bond_describe(const void *formulation, const Units *units, Text *text);
 

@@ -248,6 +248,10 @@ struct FormulationType {
    * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
    *  @return NaN for particles that stand in no lattice */
   double (*crack_length)(const void *formulation, int block, const double normal[3]);
+  /** Returns what the lattice of a block carries at most where it is pulled along a unit vector and free across it,
+   * over what its softening law carries. NULL: the law's own.
+   *  @return NaN for particles that stand in no lattice, laws that do not soften or are in servers */
+  double (*uniaxial_strength)(const void *formulation, int block, const double direction[3]);
   /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL:
    * none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
