@@ -155,7 +155,7 @@ static breccia_model *cantilever(const char *keys)
       "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [12, 6]}}}}\n"
       "peridynamics: {space: plane stress}\n"
       "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},\n"
-      "        {on: {face: x+, layers: 2}, displacement: [free, -0.4 mm], history: {ramp to: 1}}]\n"
+      "        {on: {face: x+, layers: 2}, displacement: [free, -0.4 mm], platen: fixed, history: {ramp to: 1}}]\n"
       "solve: {static: {end time: 1.5, increments: 15, %s}}\n",
       keys);
 }
