@@ -70,6 +70,7 @@ PORE_PRESSURE = "takes pore pressures from elements of OpenSees, which a server 
 UNDRIVEN = {
     "PM4Sand": PLANE_ONLY,
     "PM4Silt": PLANE_ONLY,
+    "VonPapaDamage": "knows plane stress only, and its damage grows by cycles that a server has none of",
     "StressDensityModel": "begins elastically, and OpenSees offers no way to set its stage from outside: take PressureDependMultiYield03 or ManzariDafalias",
     "FluidSolidPorous": "is made of another material by its tag, which a server does not have: take the command of the soil, with its undrained bulk modulus",
     "PyLiq1": PORE_PRESSURE,

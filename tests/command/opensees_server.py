@@ -186,9 +186,15 @@ def materials_are_in_the_stage_that_was_asked_for():
         stress_is(f"ManzariDafalias, {stage}", line.pull(0, 3 * YIELD_STRAIN), stress)
     line.expect("Bars has no stages: leave 'stage' out", CREATE, BARS + b"stage: 1\n", 1)
     for kind, words in (
+        ("PressureIndependMultiYield", "stays elastic until its stage is set"),
+        ("PressureDependMultiYield", "stays elastic until its stage is set"),
+        ("PressureDependMultiYield02", "stays elastic until its stage is set"),
+        ("PressureDependMultiYield03", "stays elastic until its stage is set"),
         ("CycLiqCP", "stays elastic until its stage is set"),
         ("CycLiqCPSP", "stays elastic until its stage is set"),
         ("PM4Sand", "knows plane strain only"),
+        ("PM4Silt", "knows plane strain only"),
+        ("VonPapaDamage", "knows plane stress only"),
         ("StressDensityModel", "OpenSees offers no way to set its stage from outside"),
         ("FluidSolidPorous", "is made of another material by its tag"),
         ("MultiYieldSurfaceClay", "is unknown"),  # plastic from the beginning in OpenSees: its parameter 1 is a modulus
