@@ -73,6 +73,7 @@ const FormulationType formulation_correspondence = {
     .keep_turns = correspondence_keep_turns,
     .energy_room = correspondence_energy_room,
     .gradient = correspondence_gradient,
+    .takes_small_strain = correspondence_takes_small_strain,
     .characteristic_length = correspondence_characteristic_length,
     .former_bonds = correspondence_former_bonds,
     .scratch = correspondence_scratch,

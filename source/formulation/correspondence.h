@@ -114,6 +114,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error);
 void correspondence_destroy(void *formulation);
 void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
+bool correspondence_takes_small_strain(const void *formulation);
 double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
 bool correspondence_scratch(const void *formulation, double *strain[6], double *stress[6]);

@@ -289,6 +289,12 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
   shape_gradient(c->family, (int32_t)place, inverse, f);
 }
 
+bool correspondence_takes_small_strain(const void *formulation)
+{
+  const Correspondence *c = formulation;
+  return !c->finite;
+}
+
 void correspondence_give_way(void *formulation)
 {
   Correspondence *c = formulation;

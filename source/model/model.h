@@ -10,6 +10,8 @@
 
 typedef struct Peaks { /* over all states written; infinite mean stresses: none was */
   double displacement, velocity, octahedral, mean_low, mean_high, damage;
+  /** Principal Green-Lagrange strains of laws that flow or soften under this measure (run_strains.c); 0: none. */
+  double strain_low, strain_high;
 } Peaks;
 
 struct breccia_model {

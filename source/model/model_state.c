@@ -22,7 +22,9 @@ void model_state(breccia_model *model, StateList *list)
                  {"largest octahedral shear stress", "stress", &peaks->octahedral},
                  {"lowest mean stress", "stress", &peaks->mean_low},
                  {"highest mean stress", "stress", &peaks->mean_high},
-                 {"largest damage", "1", &peaks->damage}};
+                 {"largest damage", "1", &peaks->damage},
+                 {"lowest finite strain", "1", &peaks->strain_low},
+                 {"highest finite strain", "1", &peaks->strain_high}};
   domain_state(&model->domain, list);
   solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)

@@ -597,6 +597,7 @@ void plausibility_warn(breccia_model *model)
   for (int r = 0; r < model->domain.region_count; ++r) check_control(model, &model->domain.regions[r]);
   for (int r = 0; r < model->domain.region_count; ++r) check_slender(model, &model->domain.regions[r]);
   plausibility_warn_of_loads(model);
+  plausibility_warn_of_strains(model);
   plausibility_warn_of_ground(model);
   plausibility_warn_of_damping(model);
 }

@@ -1,7 +1,7 @@
 /* What the files of plausibility share: words and units (plausibility_words.c); loads and ground
  * (plausibility_loads.c); blocks and contact (plausibility_contact.c); supports (plausibility_supports.c); patches that
- * can turn or not (plausibility_platens.c); bars (plausibility_bars.c); points beside bodies (plausibility_places.c);
- * pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
+ * can turn or not (plausibility_platens.c); strains (plausibility_strains.c); bars (plausibility_bars.c); points beside
+ * bodies (plausibility_places.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -60,6 +60,9 @@ void plausibility_warn_of_contact(breccia_model *model);
 
 /** Warns of faces held opposite each other with too few layers between them. */
 void plausibility_warn_of_supports(breccia_model *model);
+
+/** Warns of prescribed motions that strain laws with finite strain beyond 2 %. */
+void plausibility_warn_of_strains(breccia_model *model);
 
 /** Warns of bars whose size is not that of reinforcement, and where they meet a support. */
 void plausibility_warn_of_bars(breccia_model *model);

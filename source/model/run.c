@@ -45,6 +45,7 @@ static void update_peaks(breccia_model *model)
     peaks->mean_high = fmax(peaks->mean_high, (s[XX] + s[YY] + s[ZZ]) / 3);
     peaks->damage = fmax(peaks->damage, domain_damage(d, place));
   }
+  run_note_strains(model);
 }
 
 static int write_results(Run *run, Error *error)

@@ -44,6 +44,12 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error);
 /** Reinforcing bars in it: a list for summary.json, and lines for people. Nothing where there are none. */
 void run_add_bars(const breccia_model *model, Text *text);
 void run_tell_bars(const breccia_model *model, Text *text);
+/** Returns true if a law flows or softens and takes the Green-Lagrange strain in a region (run_strains.c). */
+bool run_strain_matters(const Region *region, const Material *material);
+/** Adds the state that is observed to the largest strains of such laws. */
+void run_note_strains(breccia_model *model);
+/** Warns where these strains were so large that stresses depend on the measure of strain. */
+void run_tell_strains(const breccia_model *model, Text *text);
 /** Puts what the run did into words, for breccia_model_outcome. */
 void run_tell_outcome(Run *run, int status);
 

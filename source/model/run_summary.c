@@ -511,6 +511,7 @@ void run_tell_outcome(Run *run, int status)
     text_add(t, "\n");
   }
   if (!blown_up) tell_control(d, e.stored, t);
+  if (!blown_up) run_tell_strains(model, t);
   if (!blown_up) run_tell_bars(model, t);
   tell_verdicts(s, t);
   if (!blown_up) tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
