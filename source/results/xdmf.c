@@ -3,7 +3,8 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 
-/** A field at one write: a dataset of its own, which the result file keeps as a view of the series. */
+/** A field at one write: a dataset of its own, which the result file keeps as a view of the series. Tensors are rows of one
+ * row each: VTK 9.7 takes two dimensions of a matrix for one matrix of the whole body, and 9.5 has vectors of three only. */
 static void add_field(Text *text, const XdmfSeries *series, const XdmfField *field, long long step)
 {
   const int k = field->components;
@@ -12,7 +13,7 @@ static void add_field(Text *text, const XdmfSeries *series, const XdmfField *fie
            "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem Format=\"HDF\" "
            "NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%lld",
            field->name, kind, series->bytes, (long long)series->particles);
-  if (k > 1) text_add(text, " %d", k);
+  if (k > 1) text_add(text, k == 3 ? " %d" : " 1 %d", k);
   text_add(text, "\">results.vtkhdf:/Breccia/States/%lld/%s</DataItem></Attribute>\n", step, field->name);
 }
 

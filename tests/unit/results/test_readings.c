@@ -98,7 +98,11 @@ static void assert_pointed_to(const char *path, const char *name, const double *
   char *text = text_read_file(file, NULL), *at = text, *last = NULL;
   while (at && (at = strstr(at, words))) last = at++;
   if (!last) fail_msg("%s does not name '%s'", file, name);
-  snprintf(shape, sizeof shape, components > 1 ? "Dimensions=\"120 %d\"" : "Dimensions=\"120\"", components);
+  snprintf(shape, sizeof shape,
+           components == 1   ? "Dimensions=\"120\""
+           : components == 3 ? "Dimensions=\"120 %d\""
+                             : "Dimensions=\"120 1 %d\"",
+           components);
   at = strstr(last, "results.vtkhdf:");
   assert_true(strstr(last, shape) && strstr(last, shape) < at);
   snprintf(set_name, sizeof set_name, "%.*s", (int)strcspn(strchr(at, ':') + 1, "<"), strchr(at, ':') + 1);
