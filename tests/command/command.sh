@@ -110,6 +110,20 @@ awk -F, '$1 > 1.5 && $1 < 2.5 {if ($4 < 0.97 || $4 > 1.03) exit 1; n = 1} END {e
 contains "spectrum of a column" "$(cat out)" "top over base: amplitudes "
 [ -s shaken/top-spectrum/transfer.png ] || fail "spectrum: no picture of a transfer function"
 equal "spectrum: heading of two" "$(head -1 shaken/top-spectrum/fourier.csv)" "frequency (Hz),amplitude (m/s),amplitude below (m/s),ratio"
+# a file with several channels over itself: the channel that is chosen is that of both files, so that their ratio is 1
+awk 'BEGIN {
+  for (channel = 1; channel <= 2; ++channel) {
+    print "Corrected acceleration  (Format v01.20 with 13 text lines)"; for (k = 0; k < 12; ++k) print "text"
+    print "  10  Integer-header values follow on  1 lines, Format= (10I8)"; for (k = 0; k < 10; ++k) printf "%8d", -999; print ""
+    print " 100  Real-header values follow on 17 lines, Format= (6F13.6)"
+    for (k = 0; k < 100; ++k) printf "%13.6f%s", k == 61 ? 5 : -999, k % 6 == 5 || k == 99 ? "\n" : ""
+    print "   1 Comment line(s) follow, each starting with a \"|\":\n| two channels"
+    print " 800 acceleration pts, approx 4 secs, units=cm/sec2(04),Format=(8f10.5)"
+    for (k = 0; k < 800; ++k) printf "%10.5f%s", 90 * sin(4 * channel * 3.14159265 * k * 0.005), k % 8 == 7 ? "\n" : ""
+    print "End-of-data for channel"
+  }}' > two.v2
+"$breccia" spectrum two.v2 two.v2 --channel 2 --output channels > out 2>&1; equal "spectrum of a channel: status" $? 0
+awk -F, 'NR > 1 && $4 != "" && tolower($4) != "nan" {if ($4 < 0.999 || $4 > 1.001) exit 1; n = 1} END {exit !n}' channels/fourier.csv || fail "spectrum: a channel over itself: $(cat out)"
 "$breccia" spectrum hill.AT2 --periods 0.5:0.5 --damping 0.02 --count 1 --output one > out 2>&1; equal "spectrum: one period" $? 0
 equal "spectrum: rows of one period" "$(wc -l < one/response-spectrum.csv)" 2
 

@@ -142,6 +142,40 @@ def ties_of_two_densities(test):
                     )
 
 
+def a_force_on_tied_bodies(test):
+    """Bodies of two densities that are tied gain the speed of a constant force over both masses from the first step on,
+    in explicit and in implicit steps."""
+    masses, force, dt = (4 * 2.0 * 2e-3, 6 * 7.0 * 2e-3), 3.0, 1e-4
+    for order in ("bc", "cb"):
+        blocks = {
+            "b": (
+                "  b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [2,"
+                " 2]}}}\n"
+            ),
+            "c": (
+                "  c: {material: n, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {from: [0.2, 0], to:"
+                " [0.5, 0.2]}}}\n"
+            ),
+        }
+        for solve in (
+            f"explicit: {{time step: {dt}, steps: 4}}",
+            f"implicit: {{end time: {4 * dt}, time step: {dt}, local error: 1e9, residual: 1e-11}}",
+            f"implicit: {{end time: {4 * dt}, time step: {dt}, local error: 1e9, residual: 1e-11, scheme: HHT}}",
+        ):
+            found = test.run(
+                UNITS
+                + "materials:\n  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}\n"
+                "  n: {model: elastic, density: 7, Young modulus: 4e4, Poisson ratio: 0.2}\nbody:\n"
+                + "".join(blocks[name] for name in order)
+                + "peridynamics: {formulation: ordinary, space: plane strain}\n"
+                f"loads:\n  - {{on: {{all: yes}}, tie: {{}}}}\n  - {{on: {{block: c}}, force: [{force}, 0]}}\n"
+                f"solve: {{{solve}}}\n" + PERIOD
+            )
+            for n, value in enumerate(rows(found, "fast")):
+                speed = force / sum(masses) * n * dt
+                test.near(value, speed, 1e-8, force / sum(masses) * dt, f"velocity after {n} steps, {solve}")
+
+
 def dashpots_with_damping(test):
     """A column of particles that moves sideways against dashpots and mass damping: a step dt multiplies its velocity by
     (1 - r dt / 2) / (1 + r dt / 2), where r is the sum of both rates."""
@@ -321,8 +355,9 @@ def spin_at_present_positions(test):
 
 
 def breaking_under_free_strain(test):
-    """Bonds of a body with a free strain break at the sum of this strain and the critical stretch."""
-    for free, stretch in ((0.005, 0.004), (-0.002, 0.008)):
+    """Bonds of a body with a free strain break at the sum of this strain and the critical stretch, even where this sum
+    is negative, so that the bonds are shorter than at first."""
+    for free, stretch, begin in ((0.005, 0.004, 0), (-0.002, 0.008, 0), (-0.008, 0.004, -0.4)):
         found = test.run(
             UNITS + "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
             "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, "
@@ -330,16 +365,19 @@ def breaking_under_free_strain(test):
             "peridynamics: {formulation: ordinary, space: plane stress}\n"
             f"failure: {{critical stretch: {stretch}, near grips: break}}\nloads:\n"
             f"  - {{on: {{all: yes}}, initial strain: {free}}}\n"
-            "  - {on: {all: yes}, field: {displacement: ['0.02 * x', 0]}, history: {ramp to: 10e-3}}\n"
+            "  - {on: {all: yes}, field: {displacement: ['0.02 * x', '0.02 * y']}, "
+            f"history: {{table: [[0, {begin}], [10e-3, {begin + 1}]]}}}}\n"
             "solve: {explicit: {time step: 2e-5, steps: 300}}\n" + PERIOD
         )
         when = found["summary"]["first_broken_bond/time"].rows[0][0]
-        test.near(when, (free + stretch) / 2, 1, 4.1e-5, f"time at which bonds with a free strain of {free} break")
+        due = (free + stretch) / 2 - 0.01 * begin
+        test.near(when, due, 1, 4.1e-5, f"time at which bonds with a free strain of {free} break")
 
 
 FORMS = (
     implicit_steps_with_damping,
     ties_of_two_densities,
+    a_force_on_tied_bodies,
     dashpots_with_damping,
     reversed_slip,
     strength_of_a_joint,

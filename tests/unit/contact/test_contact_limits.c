@@ -94,6 +94,29 @@ static void the_stable_step_holds_when_faces_press(void **state)
   if (!under_sanitizers()) assert_true(most > 0.7); /* nor is it much too short */
 }
 
+/** Contact bounds the stable step by the lighter one of two bodies, whichever the deck names first. */
+static void the_lighter_body_bounds_the_stable_step_in_any_order(void **state)
+{
+  (void)state;
+  static const char *const blocks[] = {
+      "  a: {material: light, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0, 0], to: [0.6, "
+      "0.5]}}}\n",
+      "  b: {material: heavy, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0, 0.6], to: [0.6, "
+      "1.1]}}}\n"};
+  double step[2];
+  for (int order = 0; order < 2; ++order) {
+    breccia_model *m = model_of("units: {length: m, force: kN, time: s}\nmaterials:\n"
+                                "  light: {model: elastic, density: 1, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+                                "  heavy: {model: elastic, density: 16, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+                                "peridynamics: {space: plane strain, horizon: 0.21}\ncontact: {}\nbody:\n%s%s"
+                                "solve: {explicit: {steps: 1}}\n",
+                                blocks[order], blocks[!order]);
+    step[order] = m->solver.clock.stable;
+    breccia_model_destroy(&m);
+  }
+  assert_near(step[1], step[0], 1e-2 * step[0]);
+}
+
 /** Faces of unlike spacing press like a layer of both: by the stiffness times Young's modulus and the gap over the mean spacing. */
 static void unlike_spacings_press_like_a_layer_of_both(void **state)
 {
@@ -294,6 +317,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_stable_step_holds_when_faces_press),
+      cmocka_unit_test(the_lighter_body_bounds_the_stable_step_in_any_order),
       cmocka_unit_test(a_run_that_gains_a_fifth_through_contact_is_stopped),
       cmocka_unit_test(unlike_spacings_press_like_a_layer_of_both),
       cmocka_unit_test(friction_restarts_to_the_same_bits),

@@ -147,6 +147,38 @@ static void all_materials_have_the_limit_of_the_deck(void **state)
   }
 }
 
+/** A fracture energy gives each material the limit of its own lattice, whatever stands beside it. */
+static void a_limit_is_that_of_the_lattice_of_its_material(void **state)
+{
+  (void)state;
+  static const char *const blocks[] = {
+      "  a: {material: fine, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [0, 0], to: [0.6, "
+      "0.6]}}}\n",
+      "  b: {material: coarse, lattice: hexagonal, spacing: 0.15, thickness: 1, shape: {box: {particles: [4, 4], first "
+      "particle: [0.9, 0.1]}}}\n"};
+  static const struct {
+    const char *formulation, *failure, *law;
+  } cases[] = {{"ordinary", "fracture energy: 0.1", "elastic"},
+               {"bond-based", "fracture energy: 0.1", "elastic-1d"},
+               {"ordinary", "criterion: critical bond energy, fracture energy: 0.1", "elastic"}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    double limit[3][2];
+    for (int alone = 0; alone < 3; ++alone) { /* the first, the second, both */
+      const char *ratio = cases[c].law[7] ? "" : ", Poisson ratio: 0.2";
+      breccia_model *m = model_of("materials:\n  fine: {model: %s, density: 2, Young modulus: 1e4%s}\n"
+                                  "  coarse: {model: %s, density: 2, Young modulus: 1e4%s}\nbody:\n%s%s"
+                                  "peridynamics: {formulation: %s, space: plane strain, horizon: 0.35}\nfailure: {%s}\n"
+                                  "solve: {explicit: {steps: 1}}\n",
+                                  cases[c].law, ratio, cases[c].law, ratio, alone == 1 ? "" : blocks[0],
+                                  alone == 0 ? "" : blocks[1], cases[c].formulation, cases[c].failure);
+      memcpy(limit[alone], m->domain.failure.limit, sizeof limit[alone]);
+      breccia_model_destroy(&m);
+    }
+    for (int k = 0; k < 2; ++k) assert_near(limit[2][k], limit[k][k], 1e-12 * limit[k][k]);
+    assert_true(fabs(limit[0][0] / limit[1][1] - 1) > 1e-3);
+  }
+}
+
 /** Fails if a bond is left that is beyond its limit. */
 static void assert_none_is_beyond(const breccia_model *m, const char *what)
 {
@@ -373,6 +405,7 @@ int main(void)
       cmocka_unit_test(particles_right_at_the_distance_are_kept_too),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(all_materials_have_the_limit_of_the_deck),
+      cmocka_unit_test(a_limit_is_that_of_the_lattice_of_its_material),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
       cmocka_unit_test(bonds_of_what_is_moved_break_in_time),
       cmocka_unit_test(bonds_at_rest_break_in_the_increment_that_overloads_them),

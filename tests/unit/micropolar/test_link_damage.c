@@ -1,6 +1,8 @@
 /* Damage of links: what one link carries, which links beside it may crush, and what a crack takes. */
 #include "link_bodies.h"
 
+#include <unistd.h>
+
 /* ---- one link ---- */
 
 /** Moves particle b of a row along it to a stretch of its link to the one before, which stays; what the link pulls with [force]. */
@@ -333,6 +335,51 @@ static void families_of_scattered_particles_are_taken_as_whole(void **state)
   }
 }
 
+/** Links of scattered particles lose their force at the stretch at which those of a fine lattice do, whose sums come to
+ * the same integrals: of a Poisson ratio of 1/4, which links without bending have. */
+static void scattered_links_end_where_those_of_a_fine_lattice_do(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *lattice, *shape, *space;
+  } cases[] = {{"hexagonal", "[17, 17]", "plane strain, horizon: 8.3 spacings"},
+               {"face-centred cubic", "[9, 9, 9]", "3-D, horizon: 4.3 spacings"}};
+  static const char *const file = "test_link_damage_scattered.csv";
+  for (int c = 0; c < 2; ++c) {
+    double end[2];
+    for (int scattered = 0; scattered < 2; ++scattered) {
+      char where[200];
+      if (scattered)
+        snprintf(where, sizeof where, "file: %s", file);
+      else
+        snprintf(where, sizeof where, "lattice: %s, shape: {box: {particles: %s}}", cases[c].lattice, cases[c].shape);
+      breccia_model *model = model_of(
+          UNITS "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.25, tensile "
+                "stretch: 1e-4, fracture energy: 5}}\n"
+                "body: {b: {material: m, spacing: 0.1, %s %s}}\n"
+                "peridynamics: {formulation: micropolar, space: %s}\nsolve: {explicit: {steps: 1}}\n",
+          c           ? ""
+          : scattered ? "lattice: square, thickness: 0.3,"
+                      : "thickness: 0.3,",
+          where, cases[c].space);
+      const Particles *p = model->domain.particles;
+      end[scattered] = formulation_of(model)->damage->laws[0].tension_end;
+      FILE *table = scattered ? NULL : fopen(file, "w");
+      if (table) fputs("x,y,z,volume\n", table);
+      for (int64_t n = 0; table && n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        fprintf(table, "%.17g,%.17g,%.17g,%.17g\n", p->position[0][i], p->position[1][i], p->position[2][i],
+                p->volume[i]);
+      }
+      if (table) fclose(table);
+      breccia_model_destroy(&model);
+    }
+    unlink(file);
+    print_message("%s: links end at %g on the lattice, at %g of scattered particles\n", cases[c].space, end[0], end[1]);
+    assert_near(end[1] / end[0], 1, 0.05);
+  }
+}
+
 static void spacings_that_snap_back_are_refused(void **state)
 {
   (void)state;
@@ -450,6 +497,7 @@ int main(void)
       cmocka_unit_test(what_was_tried_leaves_nothing_behind),
       cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
       cmocka_unit_test(families_of_scattered_particles_are_taken_as_whole),
+      cmocka_unit_test(scattered_links_end_where_those_of_a_fine_lattice_do),
       cmocka_unit_test(spacings_that_snap_back_are_refused),
       cmocka_unit_test(torn_bars_keep_their_books_and_bits),
       cmocka_unit_test(notched_bars_spend_the_fracture_energy_at_any_spacing),

@@ -352,6 +352,48 @@ static void forces_are_derivatives_of_the_energy(void **state)
     }
 }
 
+/** Links between two materials have the mean stiffness of both, and neither push nor turn the body. */
+static void links_between_two_materials_neither_push_nor_turn(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *space, *block, *boxes[2];
+  } bodies[] = {
+      {"3-D", "lattice: cubic,", {"[0, 0, 0], to: [0.3, 0.3, 0.3]", "[0.3, 0, 0], to: [0.6, 0.3, 0.3]"}},
+      {"plane stress", "lattice: square, thickness: 0.3,", {"[0, 0], to: [0.4, 0.4]", "[0.4, 0], to: [0.8, 0.4]"}}};
+  for (int b = 0; b < 2; ++b) {
+    breccia_model *model =
+        model_of(UNITS "materials:\n  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}\n"
+                       "  n: {model: elastic, density: 3, Young modulus: 7e4, Poisson ratio: 0.1}\n"
+                       "body:\n  b: {material: m, spacing: 0.1, %s shape: {box: {from: %s}}}\n"
+                       "  c: {material: n, spacing: 0.1, %s shape: {box: {from: %s}}}\n"
+                       "peridynamics: {formulation: micropolar, space: %s}\n" STEP,
+                 bodies[b].block, bodies[b].boxes[0], bodies[b].block, bodies[b].boxes[1], bodies[b].space);
+    const Particles *p = model->domain.particles;
+    model->threads = 1;
+    disturb(model, 0.05, 0.4, 3);
+    compute_forces(model);
+    double most = 0, sum[3] = {0}, force[3] = {0};
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      for (int k = 0; k < 3; ++k) {
+        const int x = (k + 1) % 3, y = (k + 2) % 3;
+        const double v = p->volume[i];
+        force[k] += v * p->internal[k][i];
+        sum[k] += v * ((p->position[x][i] + p->displacement[x][i]) * p->internal[y][i] -
+                       (p->position[y][i] + p->displacement[y][i]) * p->internal[x][i]);
+        if (p->motions == 6 || k == 2) sum[k] += v * p->internal[p->motions == 6 ? ROTATION + k : ROTATION][i];
+        most = larger_of(most, fabs(v * p->internal[k][i]));
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      assert_near(force[k] / most, 0, 1e-12);
+      assert_near(sum[k] / (most * spacing), 0, 1e-11);
+    }
+    breccia_model_destroy(&model);
+  }
+}
+
 /** Turned as a whole, up to a full turn, a body carries what it did, turned with it: nothing where it was straight, and the same where it was bent. */
 static void rotation_of_the_whole_changes_nothing(void **state)
 {
@@ -571,6 +613,7 @@ int main(void)
       cmocka_unit_test(what_cannot_turn_yet_is_refused),
       cmocka_unit_test(a_link_is_a_beam),
       cmocka_unit_test(forces_are_derivatives_of_the_energy),
+      cmocka_unit_test(links_between_two_materials_neither_push_nor_turn),
       cmocka_unit_test(rotation_of_the_whole_changes_nothing),
       cmocka_unit_test(links_of_the_thesis_resist_rotation),
       cmocka_unit_test(a_row_of_links_bends_like_a_beam),

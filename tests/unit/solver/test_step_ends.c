@@ -284,10 +284,37 @@ static void damping_and_springs_shorten_steps_as_they_must(void **state)
 #undef CUBE
 }
 
+/** A spring between two bodies adds k (1 / m_1 + 1 / m_2) to the square of the fastest vibration, whichever end the
+ * deck names first: here three times that of either body, whose waves are equally fast. */
+static void a_spring_between_two_densities_is_as_fast_as_its_lighter_end(void **state)
+{
+  (void)state;
+#define PAIR                                                                                                           \
+  "units: {length: m, force: kN, time: s}\nmaterials:\n"                                                               \
+  "  heavy: {model: elastic, density: 20, Young modulus: 1e5, Poisson ratio: 0.25}\n"                                  \
+  "  light: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\nbody:\n"                            \
+  "  h: {material: heavy, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.6, 0.5, 0.4]}}}\n"                       \
+  "  l: {material: light, spacing: 0.1, shape: {box: {from: [2, 0, 0], to: [2.6, 0.5, 0.4]}}}\n"                       \
+  "peridynamics: {horizon: 1.5 spacings}\nloads: [%s]\nsolve: {explicit: {steps: 1}}\n"
+  breccia_model *m = model_of(PAIR, "");
+  const double t = m->solver.clock.stable, w = 2 / t, volume = 120 * 0.001, both = 1 / (20 * volume) + 1 / (2 * volume);
+  breccia_model_destroy(&m);
+  for (int k = 0; k < 2; ++k) {
+    char spring[200];
+    snprintf(spring, sizeof spring, "{on: {block: %s}, spring: {to: {block: %s}, stiffness: %.17g}}", k ? "l" : "h",
+             k ? "h" : "l", 3 * w * w / both);
+    m = model_of(PAIR, spring);
+    assert_near(m->solver.clock.stable, t / 2, 2e-3 * t);
+    breccia_model_destroy(&m);
+  }
+#undef PAIR
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(damping_and_springs_shorten_steps_as_they_must),
+      cmocka_unit_test(a_spring_between_two_densities_is_as_fast_as_its_lighter_end),
       cmocka_unit_test(damped_bodies_come_to_rest_at_the_default_step),
       cmocka_unit_test(a_body_that_supports_hold_is_out_of_balance_while_it_moves),
       cmocka_unit_test(steps_end_with_the_times_that_are_asked_for),

@@ -229,6 +229,40 @@ static void what_yields_is_damped_by_its_elastic_stiffness(void **state)
   }
 }
 
+/** What may yield and does not is damped as an elastic body is, in the plane across which it may strain, too. */
+static void what_does_not_yield_is_damped_as_elastic_bodies_are(void **state)
+{
+  (void)state;
+  static const char *const spaces[] = {"plane strain", "plane stress"}, *const laws[] = {"elastic",
+                                                                                         "j2, yield stress: 1e9"};
+  for (int s = 0; s < 2; ++s) {
+    breccia_model *m[2];
+    for (int k = 0; k < 2; ++k) {
+      m[k] =
+          model_of("units: {length: m, force: kN, time: s}\n"
+                   "materials: {m: {model: %s, bulk modulus: 6666, shear modulus: 4000, density: 2}}\n"
+                   "body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [8, "
+                   "4]}}}}\n"
+                   "peridynamics: {space: %s}\n"
+                   "loads:\n  - {on: {face: x-}, support: {held: all}}\n  - {on: {face: x+}, force: [3, 1]}\n"
+                   "solve: {implicit: {end time: 4e-3, time step: 2e-4, local error: 1e9, residual: 1e-11, stiffness "
+                   "damping: 2 ms}}\n",
+                   laws[k], spaces[s]);
+      while (!solver_is_done(&m[k]->solver)) step_surely(m[k], 1);
+    }
+    const Particles *one = m[0]->domain.particles, *other = m[1]->domain.particles;
+    double most = 0;
+    for (int64_t i = 0; i < one->places; ++i) most = larger_of(most, fabs(one->displacement[0][i]));
+    for (int k = 0; k < 2; ++k)
+      for (int64_t i = 0; i < one->places; ++i)
+        assert_near(other->displacement[k][i], one->displacement[k][i], 1e-8 * most);
+    const double damping = solver_energy(&m[0]->solver).damping;
+    assert_true(most > 0 && damping > 0);
+    assert_near(solver_energy(&m[1]->solver).damping, damping, 1e-7 * damping);
+    for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
+  }
+}
+
 /** sqrt(b^2 + s^2) - b: just below it nothing grows, just above it everything. */
 static void the_stable_step_is_shorter(void **state)
 {
@@ -384,6 +418,7 @@ int main(void)
       cmocka_unit_test(soil_is_amplified_by_two_point_damping),
       cmocka_unit_test(a_burst_tells_the_transfer_function),
       cmocka_unit_test(what_yields_is_damped_by_its_elastic_stiffness),
+      cmocka_unit_test(what_does_not_yield_is_damped_as_elastic_bodies_are),
       cmocka_unit_test(the_stable_step_is_shorter),
       cmocka_unit_test(bonds_break_as_without),
       cmocka_unit_test(wrong_damping_is_refused),
