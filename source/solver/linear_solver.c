@@ -116,8 +116,8 @@ int linear_solver_solve(LinearSolver *s, double *const f[MOTIONS], double *const
   *record = (LinearRecord){0};
   int status = s->left != s->given_up ? linear_solver_prepare(s, error) : BRECCIA_OK;
   if (!status) status = s->type->solve(s, f, v, tolerance, record, error);
-  while (!status && !record->stopped && record->unsuited && s->is_free && s->type->instead &&
-         s->type->instead->suits(s) > 0)
+  while (!status && !record->stopped && record->unsuited && !(s->definite && record->indefinite) && s->is_free &&
+         s->type->instead && s->type->instead->suits(s) > 0)
     status = take_instead(s, f, v, tolerance, record, error);
   const LinearType *next = s->type->instead;
   if (!status && !record->stopped && s->is_free && record->iterations > TEDIOUS && next &&

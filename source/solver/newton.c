@@ -1,4 +1,5 @@
 #include "solver/newton_parts.h"
+#include "solver/newton_stability.h"
 #include "solver/pieces.h"
 #include "solver/vectors.h"
 
@@ -397,6 +398,8 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     return NEWTON_CONVERGED;
   }
   Pace pace = {.least = INFINITY};
+  const bool secants = n->begins_by_secants && domain_take_secants(n->domain, SECANTS_OF_BONDS);
+  if (secants && newton_linearise(n, error)) return NEWTON_FAILED;
   const int64_t most = newton_most_iterations(n);
   for (n->iterations = 1; n->iterations <= (pace.enough > 0 ? LONGER * n->spec->iterations : most); ++n->iterations) {
     LinearRecord linear = {0};
@@ -418,6 +421,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (n->iterations == 1) pace.products = linear.iterations;
     n->indefinite |= linear.indefinite;
     if (linear.stopped) return NEWTON_LEFT;
+    if (n->wants_stable && linear.indefinite) return NEWTON_UNSTABLE;
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
@@ -444,7 +448,11 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (is_astray(n, energy, all / first_way)) return NEWTON_ASTRAY;
-    const bool others = pace_choose_slopes(&pace, n, force);
+    bool others = pace_choose_slopes(&pace, n, force);
+    if (secants && n->iterations == 1) {
+      domain_take_secants(n->domain, SECANTS_OF_NONE);
+      others = true;
+    }
     if (pace_leaves(&pace, n)) {
       ++n->iterations; /* this one is over */
       return NEWTON_LEFT;
@@ -455,9 +463,25 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   return NEWTON_SLOW;
 }
 
+/** Checks the equilibrium found, unless its stiffness is that of the last iteration. */
+static NewtonOutcome check_stability(Newton *n, double time, Error *error)
+{
+  enum { FEW = 2 }; /* iterations, in which the body answers all but linearly */
+  bool stays = true;
+  if (n->iterations <= FEW) return NEWTON_CONVERGED;
+  n->linear.allowed = 0;
+  domain_take_secants(n->domain, SECANTS_OF_NONE);
+  if (newton_find_stability(n, &stays, error)) return NEWTON_FAILED;
+  const NewtonOutcome outcome = newton_find_forces(n, time, error);
+  return outcome == NEWTON_CONVERGED && !stays ? NEWTON_UNSTABLE : outcome;
+}
+
 NewtonOutcome newton_solve(Newton *n, double time, Error *error)
 {
-  const NewtonOutcome outcome = solve(n, time, error);
+  n->linear.definite = n->wants_stable;
+  NewtonOutcome outcome = solve(n, time, error);
+  if (n->wants_stable && outcome == NEWTON_CONVERGED) outcome = check_stability(n, time, error);
+  n->linear.definite = false;
   n->linear.allowed = 0;
   domain_take_secants(n->domain, SECANTS_OF_NONE);
   if (!n->beside) domain_mix_tangents(n->domain, 0);
@@ -484,6 +508,10 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
   case NEWTON_LEFT:
     snprintf(words, size, "it hardly comes on: %lld iterations left %.2g of the forces out of balance",
              (long long)n->iterations - 1, n->unbalanced);
+    break;
+  case NEWTON_UNSTABLE:
+    snprintf(words, size, "after %lld iteration%s the body does not resist some motion", (long long)n->iterations,
+             n->iterations == 1 ? "" : "s");
     break;
   case NEWTON_LAW: {
     const int64_t i = d->failed_place;

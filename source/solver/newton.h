@@ -53,6 +53,7 @@ typedef enum NewtonOutcome {
   NEWTON_CONVERGED,
   NEWTON_SLOW,     /* too many iterations */
   NEWTON_LEFT,     /* it hardly comes on, and other ways to rest are at hand */
+  NEWTON_UNSTABLE, /* the body does not resist some motion, and the next stable equilibrium is wanted */
   NEWTON_DIVERGED, /* forces that are no numbers, or grow beyond all bounds */
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
@@ -82,6 +83,9 @@ typedef struct Newton {
   const NewtonForces *beside; /* NULL: none, as at rest */
   bool
       has_others; /* other ways to rest are at hand, to which an increment is left where Newton's method hardly comes on */
+  /* Newton's method ends with NEWTON_UNSTABLE where the tangent stiffness has a negative eigenvalue. */
+  bool wants_stable;
+  bool begins_by_secants;          /* the first iteration takes secants of bonds that soften: each as if it unloaded */
   const volatile int *interrupted; /* non-zero: what is under way ends at once; NULL: it never is */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;

@@ -1,6 +1,7 @@
 #include "solver/newton_stability.h"
 
 #include "base/random.h"
+#include "solver/newton_parts.h"
 #include "solver/vectors.h"
 #include <math.h>
 
@@ -16,6 +17,18 @@ static void push(const Newton *n, double *const f[MOTIONS])
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->count; ++i) f[k][p->place_of[i]] = unknowns_length(u, k) * (random_uniform(&seed) - 0.5);
   unknowns_gather(u, f);
+}
+
+int newton_find_stability(Newton *n, bool *stays, Error *error)
+{
+  const double accuracy = 1e-4; /* of the push */
+  LinearRecord linear = {0};
+  if (newton_linearise(n, error) || newton_prepare(n, error)) return BRECCIA_FAILURE;
+  push(n, n->force);
+  if (linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error)) return BRECCIA_FAILURE;
+  n->products += linear.iterations;
+  *stays = !linear.indefinite;
+  return BRECCIA_OK;
 }
 
 int newton_seek_fall(Newton *n, Preconditioner *m, double *const fall[MOTIONS], double *const rest[MOTIONS],

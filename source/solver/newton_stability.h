@@ -17,4 +17,9 @@
 int newton_seek_fall(Newton *newton, Preconditioner *preconditioner, double *const fall[MOTIONS],
                      double *const rest[MOTIONS], double *const product[MOTIONS], bool *falls, Error *error);
 
+/** Determines whether a body stays in the equilibrium held: whether its tangent stiffness is positive definite, as the
+ *  linear solver sees that (`linear.definite` must be set). Overwrites `force` and `change` of `newton`.
+ *  @param[out] stays  true if no motion was found that the body does not resist */
+int newton_find_stability(Newton *newton, bool *stays, Error *error);
+
 #endif

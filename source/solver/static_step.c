@@ -135,9 +135,9 @@ static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
              s->lag);
   else
     text_add(s->newton.log, "    %s: %s\n",
-             outcome == NEWTON_COARSE ? "cut"
-             : outcome == NEWTON_LEFT ? "left to other ways"
-                                      : "no equilibrium",
+             outcome == NEWTON_COARSE                               ? "cut"
+             : outcome == NEWTON_LEFT || outcome == NEWTON_UNSTABLE ? "left to other ways"
+                                                                    : "no equilibrium",
              newton_describe(&s->newton, outcome, words, sizeof words));
 }
 
@@ -248,7 +248,8 @@ static void tell_jumps(const Static *s, Text *warning)
 static bool is_stuck(const Static *s, NewtonOutcome outcome, double length)
 {
   const double least = 1.0 / 16; /* of an increment as asked for */
-  return outcome == NEWTON_LEFT || s->newton.iterations > s->spec->newton.iterations + 1 ||
+  return outcome == NEWTON_LEFT || outcome == NEWTON_UNSTABLE ||
+         s->newton.iterations > s->spec->newton.iterations + 1 ||
          length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
 }
 
@@ -271,14 +272,24 @@ NewtonOutcome static_try_others(Static *s, NewtonOutcome outcome, double end, bo
   return outcome;
 }
 
-/** First try of an increment, and by other ways where Newton's method is stuck: the body jumps to another equilibrium.
+/** Tries an increment by Newton's method, and by other ways where the method is stuck or leads to an equilibrium in which
+ *  the body does not stay: the body jumps to another equilibrium. Under control a failed try is repeated with softened
+ *  bonds that unload in the first iteration: which of them do, the slopes at their largest strain do not tell.
  *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
 static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
 {
   const bool others = domain_may_soften(s->domain) && static_may_relax(s);
   s->newton.has_others = others && domain_bonds_may_soften(s->domain) && *may_relax;
+  s->newton.wants_stable = others && domain_bonds_may_soften(s->domain);
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
-  s->newton.has_others = false;
+  s->newton.has_others = s->newton.wants_stable = false;
+  if (s->spec->control && domain_bonds_may_soften(s->domain) && outcome < NEWTON_STOPPED &&
+      !came_to_equilibrium(outcome)) {
+    tell_refused(s, outcome, true);
+    s->newton.begins_by_secants = true;
+    outcome = static_try(s, end, (Try){0}, error);
+    s->newton.begins_by_secants = false;
+  }
   if (outcome >= NEWTON_STOPPED || came_to_equilibrium(outcome) || !others ||
       !is_stuck(s, outcome, end - s->clock->time))
     return outcome;

@@ -57,18 +57,26 @@ static inline double softening_start(const void *constants)
   return c->strength * c->peak / 2;
 }
 
-/** A point strained beyond the peak: damage, if it grows, and stress and tangent then. */
+/* Difference of two stresses, over the elastic stress, that is round-off. */
+#define SOFTENING_TIE 1e-14
+
+/** Updates a point strained beyond the peak: damage, if it grows, and stress and tangent then.
+ *
+ *  Where a point stands at its largest strain so far, as at the beginning of each increment at rest, stress by damage and
+ *  stress of the envelope are equal but for round-off. The tangent is that of loading there: if round-off chose between
+ *  loading and unloading, results at rest would depend on the units of the deck. */
 __attribute__((always_inline)) static inline void softening_beyond(const void *constants, const Softening *c,
                                                                    SofteningEnvelope envelope,
                                                                    const breccia_batch *batch, int i)
 {
-  const double strain = batch->strain[0][i];
+  const double strain = batch->strain[0][i], unloading = batch->stress[0][i];
   double slope = 0, x = (strain - c->peak) / (c->end - c->peak);
   const double stress = x < 1 ? c->strength * envelope(constants, x, &slope) : 0;
-  if (!(stress < batch->stress[0][i])) return;
+  if (!(stress < unloading + SOFTENING_TIE * c->young * strain)) return;
+  if (batch->tangent) batch->tangent[i] = x < 1 ? c->strength * slope / (c->end - c->peak) : 0;
+  if (!(stress < unloading)) return;
   batch->trial[i] = x < 1 ? 1 - stress / (c->young * strain) : 1;
   batch->stress[0][i] = stress;
-  if (batch->tangent) batch->tangent[i] = x < 1 ? c->strength * slope / (c->end - c->peak) : 0;
 }
 
 /* Four points at a time up to the peak. Signs of strains follow no rule that a processor could guess, so that branches cost more than the law;
