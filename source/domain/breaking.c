@@ -88,6 +88,33 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
+/** Returns the share of the energy of a bond that the bond held at its limit. At rest bonds are judged when a load has
+ *  grown by an increment, or others have broken: beyond their limits a crack that runs has shed the rest. In motion all
+ *  counts as fracture energy. */
+static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment)
+{
+  const Criterion *criterion = d->failure.criterion;
+  if (!moment->most || !criterion || !criterion->share_at_limit) return 1;
+  const Bond bond = family_bond(&d->family, slice, slot, lane);
+  const double beyond = d->failure.beyond;
+  d->failure.beyond = 0;
+  const double share = criterion->share_at_limit(&d->failure, &d->family, slice, slot, &bond, lane);
+  d->failure.beyond = beyond;
+  const double weight = d->failure.influence->value(fmin(1, bond.length / d->family.horizon), bond.length) *
+                        bond.length * bond.length * d->particles->volume[slice * SLICE + lane] *
+                        d->particles->volume[bond.neighbour];
+  d->energy_at_limit += weight;
+  d->energy_held += weight / share;
+  return share;
+}
+
+/** Adds energy that broken bonds held. */
+static void book(Domain *d, double energy, double share)
+{
+  d->fracture_energy += share * energy;
+  d->shed_energy += (1 - share) * energy;
+}
+
 static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment)
 {
   const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
@@ -95,15 +122,16 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
   StoredEnergy energy;
   const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
+  const double share = find_share(d, slice, slot, lane, moment);
   if (own->type->bond_energy) {
     own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
-    d->fracture_energy +=
-        own->type->face_force ? energy.inside : (their == own ? (inside + beyond) / 2 : inside) * energy.received;
+    book(d, own->type->face_force ? energy.inside : (their == own ? (inside + beyond) / 2 : inside) * energy.received,
+         share);
   }
   if (their != own && their->type->bond_energy) {
     their->type->bond_energy(their->formulation, neighbour / SLICE, family_slot(&d->family, neighbour, place),
                              neighbour % SLICE, moment->time_step, &energy);
-    d->fracture_energy += their->type->face_force ? energy.inside : beyond * energy.received;
+    book(d, their->type->face_force ? energy.inside : beyond * energy.received, share);
   }
   if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
     d->out_of_memory = true;
@@ -274,10 +302,10 @@ void domain_settle(Domain *d, const Region *region)
   TEAM_SINGLE if (d->particles->free_growth) domain_tell_strains(d, region->points.time);
   TEAM_SINGLE
   for (int64_t n = 0; n < d->torn_count; ++n) {
+    const double share = d->energy_held > 0 ? d->energy_at_limit / d->energy_held : 1;
     if (domain_region(d, d->torn[n].place) != region) continue;
     carry_less(d, &d->torn[n]);
-    if (d->counted[d->torn[n].place] > 0)
-      d->fracture_energy += d->torn[n].received - d->torn[n].carried - d->torn[n].control;
+    if (d->counted[d->torn[n].place] > 0) book(d, d->torn[n].received - d->torn[n].carried - d->torn[n].control, share);
   }
 }
 
@@ -293,6 +321,7 @@ void domain_break(Domain *d, const Moment *moment)
   TEAM_SINGLE
   {
     d->broken_before = d->broken_count;
+    d->energy_at_limit = d->energy_held = 0;
     d->motion += moment->motion;
     d->failure.moved = moment->motion;
     domain_tell_time(d, moment->time, moment->time_step);

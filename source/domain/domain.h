@@ -139,6 +139,10 @@ typedef struct Domain {
   BrokenBond *broken;    /* in the order in which they broke */
   int64_t broken_count, broken_capacity;
   double fracture_energy; /* that bonds had received, and neither gave back nor dissipated, when they broke */
+  /* Energy that bonds held beyond their limits when they broke at rest, not part of `fracture_energy`. */
+  double shed_energy;
+  /* Sums over the bonds that break in the step under way: energy at the limit and energy held, but for a factor. */
+  double energy_at_limit, energy_held;
   Torn *torn;
   int64_t torn_count, torn_capacity;
   uint8_t *is_torn;      /* [places] 1, or 2 where its family carries less from this step on */

@@ -116,6 +116,7 @@ void domain_state(Domain *d, StateList *list)
   family_state(&d->family, list);
   state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);
   state_add_number(list, "fracture energy", "energy", STATE_TRIED, &d->fracture_energy);
+  state_add_number(list, "energy shed by bonds", "energy", STATE_TRIED, &d->shed_energy);
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     if (!region->type->shares) continue;

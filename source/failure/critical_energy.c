@@ -146,25 +146,45 @@ static double half_energy(const Failure *failure, const Family *f, int64_t slice
   return sum;
 }
 
+/** Energy of a bond, its limit and whether the bond exceeds the limit. */
+typedef struct Judgement {
+  bool exceeds;
+  double held, limit;
+} Judgement;
+
 /** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect. */
-static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+static Judgement judge(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
 {
   const int64_t place = slice * SLICE + lane;
   const double influence = failure->influence->value(fmin(1, bond->length / f->horizon), bond->length);
   const double limit = failure_limit(failure, place, bond->neighbour) * bond->weight /
                        (influence * f->particles->volume[bond->neighbour]);
-  if (!(bond->weight > 0) || isinf(limit) || !failure_is_longer(f, place, bond)) return false;
+  if (!(bond->weight > 0) || isinf(limit) || !failure_is_longer(f, place, bond)) return (Judgement){0};
   const double small = 0.1; /* of the limit: half states of bonds that are asked for all that they hold */
   const FailureRegion *region = &failure->regions[failure->region[slice]];
   double (*held)(const void *, int64_t, int64_t, int) = region->type->held_energy;
   const double own = half_energy(failure, f, slice, slot, lane, bond);
-  if (!held && own < limit / 2 * (1 - 1e-12)) return false;
+  if (!held && own < limit / 2 * (1 - 1e-12)) return (Judgement){0};
   const int64_t there = bond->neighbour / SLICE, back = family_slot(f, bond->neighbour, (int32_t)place);
   const Bond turned = family_bond(f, there, back, bond->neighbour % SLICE);
   const double both = own + half_energy(failure, f, there, back, bond->neighbour % SLICE, &turned);
-  if (!held) return both > limit;
+  if (!held) return (Judgement){both > limit, both, limit};
   const double volumes = f->particles->volume[place] * f->particles->volume[bond->neighbour];
-  return both > small * limit && held(region->formulation, slice, slot, lane) > limit * volumes;
+  if (!(both > small * limit)) return (Judgement){0};
+  const double all = held(region->formulation, slice, slot, lane);
+  return (Judgement){all > limit * volumes, all, limit * volumes};
+}
+
+static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+{
+  return judge(failure, f, slice, slot, bond, lane).exceeds;
+}
+
+static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
+                             int lane)
+{
+  const Judgement of = judge(failure, f, slice, slot, bond, lane);
+  return of.exceeds ? of.limit / of.held : 1;
 }
 
 /** Adds the fracture energy behind the limit, and the stretch of which a crack spends as much. */
@@ -199,4 +219,5 @@ const Criterion criterion_critical_energy = {
     .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
+    .share_at_limit = share_at_limit,
 };

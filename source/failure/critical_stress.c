@@ -50,16 +50,30 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
   return BRECCIA_OK;
 }
 
-static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+/** Returns the larger of tension and shear of a bond, each over its limit. */
+static double load_of(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
 {
   const CriticalStressSpec *spec = failure->keys;
   const FailureRegion *own = &failure->regions[failure->region[slice]];
   const int64_t place = slice * SLICE + lane;
   const double limit = failure_limit(failure, place, bond->neighbour);
   double tension, shear;
-  if (isinf(limit) || !failure_is_longer(f, place, bond)) return false;
+  if (isinf(limit) || !failure_is_longer(f, place, bond)) return 0;
   own->type->section_stress(own->formulation, slice, slot, lane, &tension, &shear);
-  return tension > limit || (!isnan(spec->shear) && shear * spec->tensile > limit * spec->shear);
+  return fmax(tension / limit, isnan(spec->shear) ? 0 : shear * spec->tensile / (limit * spec->shear));
+}
+
+static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+{
+  return load_of(failure, f, slice, slot, bond, lane) > 1;
+}
+
+/** The energy of a bond grows with the square of its stress. */
+static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
+                             int lane)
+{
+  const double load = load_of(failure, f, slice, slot, bond, lane);
+  return load > 1 ? 1 / (load * load) : 1;
 }
 
 /** Stresses change with every step: bonds are looked at in each. */
@@ -84,4 +98,5 @@ const Criterion criterion_critical_stress = {
     .limits = limits,
     .suspect = suspect,
     .exceeds = exceeds,
+    .share_at_limit = share_at_limit,
 };

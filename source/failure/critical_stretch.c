@@ -130,18 +130,35 @@ static double suspect(const Failure *failure, const Family *f, int64_t slice, ui
   return smallest > rounding ? (smallest - rounding) / 2 : 0;
 }
 
-static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+static double deformed_length(const Particles *p, int64_t place, const Bond *bond)
 {
-  (void)slot;
-  const Particles *p = f->particles;
-  int64_t place = slice * SLICE + lane;
   double square = 0;
   for (int k = 0; k < 3; ++k) {
     double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place];
     square += y * y;
   }
+  return sqrt(square);
+}
+
+static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+{
+  (void)slot;
+  const Particles *p = f->particles;
+  int64_t place = slice * SLICE + lane;
   const double freely = particles_free_strain(p, place, bond->neighbour);
-  return sqrt(square) > (1 + failure_limit(failure, place, bond->neighbour) + freely) * bond->length;
+  return deformed_length(p, place, bond) > (1 + failure_limit(failure, place, bond->neighbour) + freely) * bond->length;
+}
+
+/** The energy of a bond grows with the square of its stretch. */
+static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
+                             int lane)
+{
+  (void)slot;
+  const int64_t place = slice * SLICE + lane;
+  const double stretch = deformed_length(f->particles, place, bond) / bond->length - 1 -
+                         particles_free_strain(f->particles, place, bond->neighbour),
+               limit = failure_limit(failure, place, bond->neighbour);
+  return stretch > limit ? limit / stretch * (limit / stretch) : 1;
 }
 
 static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])
@@ -159,4 +176,5 @@ const Criterion criterion_critical_stretch = {
     .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
+    .share_at_limit = share_at_limit,
 };

@@ -74,6 +74,9 @@ typedef struct Criterion {
   /** True if this bond exceeds it. */
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                   int lane);
+  /** Returns the energy of a bond at its limit over the energy that the bond holds, 1 at most. NULL: unknown. */
+  double (*share_at_limit)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
+                           int lane);
 } Criterion;
 
 /** @return the k-th criterion, or NULL after the last */

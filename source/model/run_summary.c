@@ -248,10 +248,10 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   const struct {
     const char *key;
     double value;
-  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal},  {"stored", e.stored},
-                  {"dissipated", e.dissipated}, {"external", e.external},  {"damping", e.damping},
-                  {"fracture", e.fracture},     {"friction", e.friction},  {"numerical", e.numerical},
-                  {"between", e.between},       {"imbalance", e.imbalance}};
+  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal},   {"stored", e.stored},
+                  {"dissipated", e.dissipated}, {"external", e.external},   {"damping", e.damping},
+                  {"fracture", e.fracture},     {"friction", e.friction},   {"numerical", e.numerical},
+                  {"between", e.between},       {"imbalance", e.imbalance}, {"shed", e.shed}};
   for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, blown_up ? NAN : energies[k].value);
@@ -475,6 +475,7 @@ void run_tell_outcome(Run *run, int status)
                   {" + stored ", e.stored, true},
                   {" + dissipated ", e.dissipated, true},
                   {" + fracture ", e.fracture, true},
+                  {" + shed in unstable jumps ", e.shed, fabs(e.shed) > rounding},
                   {" + friction ", e.friction, e.friction != 0},
                   {" + damping ", e.damping, fabs(e.damping) > rounding},
                   {" + numerical damping ", e.numerical, fabs(e.numerical) > 1e-9 * s->ledger.paid},

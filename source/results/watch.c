@@ -256,7 +256,7 @@ static void energy_row(const Watch *w, const Solver *s, double *values)
   const double row[] = {e.kinetic,    e.internal,  e.stored,
                         e.dissipated, e.external,  e.damping,
                         e.fracture,   e.imbalance, (double)s->domain->broken_count,
-                        e.friction};
+                        e.friction,   e.shed};
   memcpy(values, row, sizeof row);
 }
 
@@ -304,7 +304,7 @@ static const Kind
     bond_kind = {"stretch:1,intact:1", bond_row},
     energy_kind = {"kinetic:energy,internal:energy,stored:energy,dissipated:energy,external:energy,damping:"
                    "energy,fracture:energy,"
-                   "imbalance:1,broken bonds:1,friction:energy",
+                   "imbalance:1,broken bonds:1,friction:energy,shed:energy",
                    energy_row},
 #define BAR_COLUMNS                                                                                                    \
   "least strain:1,largest strain:1,least stress:stress,largest stress:stress,stored:energy,dissipated:energy,"         \

@@ -124,7 +124,8 @@ void ledger_note_paid(Ledger *l)
 int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *units, Error *error)
 {
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
-  const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_friction(&d->forces);
+  const double fracture = d->fracture_energy + d->shed_energy,
+               internal = l->bond_work - fracture - forces_friction(&d->forces);
   const double lost = forces_dissipated(&d->forces) - forces_friction(&d->forces); /* cannot be given back */
   const bool sound = isfinite(l->paid) && internal - lost >= -most_given * l->paid &&
                      fracture >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
@@ -148,10 +149,11 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *un
 Energy ledger_energy(const Ledger *l, Domain *d)
 {
   Energy e = {.kinetic = fmax(0, l->kinetic), /* what prescribed motions take back may leave a rounding */
-              .internal = l->bond_work - d->fracture_energy - forces_friction(&d->forces),
+              .internal = l->bond_work - d->fracture_energy - d->shed_energy - forces_friction(&d->forces),
               .external = l->external_work,
               .damping = l->damped ? l->damping_work : 0, /* else roundings */
               .fracture = d->fracture_energy,
+              .shed = d->shed_energy,
               .friction = forces_friction(&d->forces),
               .numerical = l->numerical,
               .between = l->between};
@@ -160,7 +162,7 @@ Energy ledger_energy(const Ledger *l, Domain *d)
   e.dissipated = forces_dissipated(&d->forces) - e.friction;
   if (!elastic) e.dissipated = fmax(e.dissipated, e.internal - e.stored);
   const double error = l->external_work + l->kinetic_at_start + l->stored_at_start + l->between - l->kinetic -
-                       l->damping_work - l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
+                       l->damping_work - l->numerical - e.stored - e.dissipated - e.fracture - e.shed - e.friction;
   const double largest = l->paid > 0 ? l->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;

@@ -27,7 +27,8 @@ typedef struct Ledger {
   bool blown_up;          /* particles have become faster than anything explains */
 } Ledger;
 
-/** Where the work went: external + kinetic and stored at the start + between = kinetic + stored + dissipated + fracture + friction + damping + numerical + error. */
+/** Where the work went: external + kinetic and stored at the start + between = kinetic + stored + dissipated +
+ *  fracture + shed + friction + damping + numerical + error. */
 typedef struct Energy {
   double kinetic;
   double internal;   /* stored + dissipated: work on bonds, less what went with broken ones */
@@ -36,6 +37,7 @@ typedef struct Energy {
   double external;   /* work of loads and prescribed motions */
   double damping;
   double fracture;  /* work that broken bonds had received and not given back or dissipated */
+  double shed;      /* the part of that work which bonds held beyond their limits at rest, not counted in `fracture` */
   double friction;  /* of contact */
   double numerical; /* taken out of vibrations by schemes of implicit dynamics */
   double

@@ -92,7 +92,7 @@ static bool is_too_short(const Solver *run, const QuasiStaticSpec *spec)
     if (body->high[k] > body->low[k]) least = fmin(least, body->high[k] - body->low[k]);
   if (isfinite(least) && (run->clock.time - run->clock.stage_time) * ledger_wave_speed(run->domain) < least)
     return true;
-  return !(e.dissipated + e.fracture + e.friction > 1e-9 * run->ledger.paid);
+  return !(e.dissipated + e.fracture + e.shed + e.friction > 1e-9 * run->ledger.paid);
 }
 
 double quasi_static_midway(const QuasiStaticSpec *spec, double period)

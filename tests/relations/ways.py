@@ -64,7 +64,7 @@ class Told:
         e = {key[7:]: self.number(key) for key in self.summary if key.startswith("energy/")}
         size = max(abs(v) for k, v in e.items() if k != "imbalance") or 1.0
         books = self.found["books.csv"]
-        for key in ("kinetic", "internal", "stored", "dissipated", "external", "damping", "fracture", "friction", "imbalance"):
+        for key in ("kinetic", "internal", "stored", "dissipated", "external", "damping", "fracture", "shed", "friction", "imbalance"):
             self.near(books[key].rows[-1][0], e[key], 1e-8, size if key != "imbalance" else 1, f"{key} at the end in history and summary")
         self.near(books["broken bonds"].rows[-1][0], self.number("broken_bonds"), 0, 1, "broken bonds in history and summary")
         for row, whole in enumerate(books["internal"].rows):
@@ -73,12 +73,12 @@ class Told:
         begin = [name for name, _ in words].index(next(n for n, _ in words if "energy: external" in n))
         told = {}
         for name, value in words[begin:begin + 12]:
-            told[name.split("(", 1)[1].strip(")").lstrip("=+- ").replace("numerical damping", "numerical")] = value
-        for key in ("kinetic", "stored", "dissipated", "fracture", "friction", "damping", "numerical"):
+            told[name.split("(", 1)[1].strip(")").lstrip("=+- ").replace("numerical damping", "numerical").replace("shed in unstable jumps", "shed")] = value
+        for key in ("kinetic", "stored", "dissipated", "fracture", "shed", "friction", "damping", "numerical"):
             if key in told:
                 self.near(told[key], e[key], 0.006, max(abs(e[key]), 1e-6 * size), f"{key} in words and summary")
         start = told.get("kinetic at the start", 0) + told.get("stored at the start", 0)
-        spent = e["kinetic"] + e["stored"] + e["dissipated"] + e["fracture"] + e["friction"] + e["damping"] + e["numerical"] - e["between"]
+        spent = e["kinetic"] + e["stored"] + e["dissipated"] + e["fracture"] + e["shed"] + e["friction"] + e["damping"] + e["numerical"] - e["between"]
         self.near(e["external"] + start, spent, 0.02 if "implicit" in self.deck["text"] or start else 6e-3 + 2 * abs(e["imbalance"]), size, "works and energies")
 
         loose = "initial stress" in self.deck["text"] or "support" in self.deck["text"] or "pairwise" in self.deck["text"] or "law " in self.deck["name"]
