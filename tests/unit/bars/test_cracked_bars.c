@@ -187,7 +187,7 @@ static void a_beam_in_even_bending_is_left_to_relaxation(void **state)
     while (!solver_is_done(&newton->solver) && !(under_sanitizers() && left > 0)) {
       step_surely(newton, 1);
       const char *log = text_words(&newton->solver.log);
-      left += strstr(log, "left to other ways: it hardly comes on") != NULL;
+      left += strstr(log, "left to other ways") != NULL;
       most = last_iteration(log) > most ? last_iteration(log) : most;
       while (relaxation->solver.clock.time < newton->solver.clock.time - 1e-9) step_surely(relaxation, 1);
       peak = fmax(peak, fabs(exerted(relaxation, 1, 1)));
