@@ -318,6 +318,10 @@ bool domain_may_stiffen(const Domain *domain);
 
 /** Energy that unloading would give back, of all particles of the body itself [energy]. */
 double domain_stored_energy(Domain *domain);
+/** The part of that which the control of zero-energy modes holds (domain/control_energy.c) [energy]. */
+double domain_control_energy(const Domain *domain);
+/** Whether there is such a control. */
+bool domain_is_controlled(const Domain *domain);
 
 /** True if forces show what laws on bonds remember, so that they are state. */
 bool domain_laws_in_forces(const Domain *domain);

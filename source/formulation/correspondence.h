@@ -144,6 +144,8 @@ void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 /** Whether control keeps its stiffness where points of a material have lost theirs. */
 bool correspondence_control_lasts(const void *formulation, const Material *material);
+/** Energy that the control stores at a place. */
+double correspondence_held(const void *formulation, int64_t place);
 /** Energy that such a control stores at a place whose point has less than 0.7 of its stiffness left, as a secant; else 0. */
 double correspondence_held_by_yielded(const void *formulation, int64_t place);
 

@@ -44,6 +44,13 @@ bool correspondence_control_lasts(const void *formulation, const Material *mater
   return c->control != CONTROL_NONE && !material->law->linear && !fades_in(c, material);
 }
 
+double correspondence_held(const void *formulation, int64_t place)
+{
+  StoredEnergy energy;
+  correspondence_stored_energy(formulation, place, 0, &energy);
+  return energy.held;
+}
+
 double correspondence_held_by_yielded(const void *formulation, int64_t place)
 {
   const Correspondence *c = formulation;
@@ -59,9 +66,7 @@ double correspondence_held_by_yielded(const void *formulation, int64_t place)
   const double volume = strain[XX] + strain[YY] + strain[ZZ];
   for (int k = 0; k < 3; ++k) deviators += 2 * pow(strain[k] - volume / 3, 2) + strain[k + 3] * strain[k + 3];
   if (!(work < yielded * (m->bulk * volume * volume + m->shear * deviators))) return 0;
-  StoredEnergy energy;
-  correspondence_stored_energy(c, place, 0, &energy);
-  return energy.held;
+  return correspondence_held(c, place);
 }
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)

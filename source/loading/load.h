@@ -171,6 +171,9 @@ struct LoadType {
   /** After a step in which particles have moved by `factor` times `moved`: takes what `brake` found last as what stands at its end, and books its
    *  work. By one thread; with `brake`. */
   void (*settle)(Load *load, const Particles *particles, double *const moved[3], double factor);
+  /** Adds the force in all that it exerts on its particles in the state held, where that is no factor times a vector:
+   * of springs and dashpots. `time` is since it began. NULL: it follows from `force`. */
+  void (*exerts)(Load *load, const Particles *particles, double time, double force[3]);
   /** Energy that it has taken by braking. With `brake`. */
   double (*dissipated)(const Load *load);
   /** When it begins; forces are still those of the stage before. @return whether it has changed velocities. May be NULL. */

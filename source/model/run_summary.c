@@ -12,19 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-static bool has_begun(const Load *load, const Clock *clock)
-{
-  return load->first <= clock->stage;
-}
-
-/** The farthest from zero that a load has been; 0 before its stage. */
-static double load_peak(const Load *load, const Solver *s)
-{
-  if (!has_begun(load, &s->clock)) return 0;
-  const double end = load->behind <= s->clock.stage ? s->records[load->behind - 1].end : s->clock.time;
-  return history_peak(&load->history, end - load->begin) * load_magnitude(load->spec);
-}
-
 static double nanoseconds_per_bond(const breccia_model *model)
 {
   double work = (double)model->run_steps * (double)model->domain.family.bonds;
@@ -256,6 +243,10 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, blown_up ? NAN : energies[k].value);
   }
+  if (domain_is_controlled(d)) {
+    text_add(&t, ", ");
+    add_number(&t, "zero_energy_control", blown_up ? NAN : domain_control_energy(d));
+  }
   text_add(&t, "},\n");
   if (!blown_up) {
     run_add_bars(model, &t);
@@ -274,21 +265,9 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     if (k) text_add(&t, ", ");
     add_number(&t, peaks[k].key, peaks[k].value);
   }
-  text_add(&t, "},\n  \"loads\": [");
-  for (int k = 0; k < model->loading.count; ++k) {
-    const LoadSpec *l = model->loading.loads[k].spec;
-    const char *dimension, *kind = load_kind(l, &dimension);
-    char unit[64];
-    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    text_add(&t, "%s{\"name\": ", k ? ", " : "");
-    text_add_json(&t, l->name ? l->name : "");
-    text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
-    add_number(&t, "peak", load_peak(&model->loading.loads[k], s));
-    text_add(&t, ", \"unit\": ");
-    text_add_json(&t, unit);
-    text_add(&t, "}");
-  }
-  text_add(&t, "],\n  \"units\": {");
+  text_add(&t, "},\n");
+  run_add_loads(model, &t);
+  text_add(&t, "  \"units\": {");
   static const char *const units[][2] = {{"times", "time"},          {"positions and displacements", "length"},
                                          {"velocities", "velocity"}, {"stresses", "stress"},
                                          {"energies", "energy"},     {"forces", "force"},
@@ -360,28 +339,6 @@ static void tell_rest(const Solver *s, const Units *units, bool failed, Text *t)
   text_add(t, "of all these forces %.2g is left\n", balance.left);
 }
 
-static void tell_load(const breccia_model *model, const Load *load, Text *t)
-{
-  const char *dimension, *kind = load_kind(load->spec, &dimension);
-  int alike = 0; /* loads of one name, which take each other's place */
-  char stage[64];
-  for (int k = 0; k < model->loading.count; ++k) {
-    const char *other = model->loading.loads[k].spec->name;
-    alike += other && !strcmp(other, load->spec->name);
-  }
-  text_add(t, "load '%s'", load->spec->name);
-  if (alike > 1) text_add(t, " of stage '%s'", solver_stage_name(&model->solver, load->first, stage, sizeof stage));
-  text_add(t, ": %s", kind);
-  if (!has_begun(load, &model->solver.clock))
-    text_add(t, ", has not begun");
-  else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
-    char unit[64];
-    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    text_add(t, ", peak %.6g%s%s", load_peak(load, &model->solver), *unit ? " " : "", unit);
-  }
-  text_add(t, "\n");
-}
-
 /** Warns of particles that are turned inside out, where a run ends before distortion_watch has looked at them, or does
  * not mind them. */
 static void tell_inverted(const Domain *d, const char *length, Text *t)
@@ -426,6 +383,21 @@ static double rounding_energy(const Domain *d)
   return DBL_EPSILON * DBL_EPSILON * stiffest * volume;
 }
 
+/** Explains where energy went that does not come back, and tells the share of the stored energy that no law stores.
+ *  @param[in] rounding  what is less is none */
+static void tell_energies(const Domain *d, const Energy *e, double rounding, Text *t)
+{
+  const double least = 5e-4; /* of the stored energy */
+  if (e->dissipated > rounding)
+    text_add(t, "dissipated: by laws that yield or soften; the work of cracks in softening laws is here\n");
+  if (e->fracture > rounding)
+    text_add(t, "fracture: what bonds held when they broke%s\n",
+             e->dissipated > rounding ? ", beside what laws had dissipated in them before" : "");
+  const double held = domain_is_controlled(d) && e->stored > rounding ? domain_control_energy(d) / e->stored : 0;
+  if (held > least)
+    text_add(t, "of the stored energy %.2g %% is held by the control of zero-energy modes\n", 100 * held);
+}
+
 void run_tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
@@ -450,8 +422,7 @@ void run_tell_outcome(Run *run, int status)
              checkpoint_exists(run->wish->folder) ? "--restart goes on from the last checkpoint"
                                                   : "begin it again: there is no checkpoint yet");
   tell_stages(s, time, t);
-  for (int k = 0; k < model->loading.count; ++k)
-    if (model->loading.loads[k].spec->name) tell_load(model, &model->loading.loads[k], t);
+  run_tell_loads(model, t);
   double x[3];
   const BrokenBond *first = first_broken(d, x);
   if (first) {
@@ -496,6 +467,7 @@ void run_tell_outcome(Run *run, int status)
     text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
   if (!blown_up && !tiny && e.imbalance > 1e-3 && domain_flutters(d))
     text_add(t, "the imbalance is not that of steps alone: %s\n", domain_flutters(d));
+  if (!blown_up && !tiny) tell_energies(d, &e, rounding, t);
   if (!blown_up) tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);

@@ -8,7 +8,10 @@
 
 int reactions_create(Reactions *r, const Particles *p, Error *error)
 {
-  return vectors_make(r->force, p, "reactions", error) ? BRECCIA_OK : BRECCIA_FAILURE;
+  bool failed = false;
+  for (int k = 0; k < ROTATION && !failed; ++k)
+    failed = !(r->force[k] = places_reserved(p->places, "reactions", error));
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 void reactions_destroy(Reactions *r)
@@ -72,6 +75,36 @@ static void add_images(Wrench *sum, const Domain *d, const char *load)
     for (int k = 0; k < 3; ++k) pull[k] = counts[k] ? -pull[k] : 0;
     add_force(sum, d->particles, d->particles->place_of[n], pull);
   }
+}
+
+/** The same of all loads at once.
+ *  @param[in,out] force  [loads] */
+static void add_images_of_each(const Domain *d, const Loading *loading, double (*force)[3])
+{
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    if (!body_outside(&d->body, n)) continue;
+    double pull[3] = {0};
+    find_pull(d, d->particles->place_of[n], pull);
+    for (int k = 0; k < 3; ++k) {
+      const LoadSpec *support = support_along(&d->body, n, k);
+      for (int l = 0; l < loading->count; ++l)
+        if (loading->loads[l].spec == support) force[l][k] -= pull[k];
+    }
+  }
+}
+
+/** Whether several loads are supports that mirror. */
+static bool several_mirror(const Loading *loading)
+{
+  const Load *first = NULL;
+  bool several = false;
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!constraint->images) continue;
+    several |= first && constraint->load != first;
+    first = constraint->load;
+  }
+  return several;
 }
 
 /** Whether a load of a name is a support that mirrors, and another load is one, too. */
@@ -160,18 +193,26 @@ static void add_along(Summing *s, const Constraint *c, int32_t i, double along)
   add_force(&s->sum, s->solver->domain->particles, i, force);
 }
 
-/** What balances a particle in one direction is taken off there, so that another row of that direction finds nothing any more. */
+/** Takes the force that balances a particle in the direction of a constraint off there, so that another row of that
+ *  direction finds nothing any more.
+ *  @return that force */
+static double take_row(const Summing *s, const Constraint *c, int32_t i)
+{
+  double along = 0;
+  for (int k = 0; k < 3; ++k) along -= s->force[k][i] * c->direction[k];
+  for (int k = 0; k < 3; ++k) s->force[k][i] += along * c->direction[k];
+  return along;
+}
+
 static void add_row(const Constraint *c, int64_t n, void *context)
 {
   Summing *s = context;
   const int32_t i = c->load->selection.places[n];
-  double along = 0;
   if (c->row) {
     add_turning(s, c, n);
     return;
   }
-  for (int k = 0; k < 3; ++k) along -= s->force[k][i] * c->direction[k];
-  for (int k = 0; k < 3; ++k) s->force[k][i] += along * c->direction[k];
+  double along = take_row(s, c, i);
   if (!c->platen && !counts(s, c, i)) return;
   if (s->solver->type->inertia && !c->images) along += s->solver->type->inertia(s->solver, c, n);
   add_along(s, c, i, along);
@@ -191,6 +232,37 @@ Wrench reactions_sum(const Reactions *r, const Solver *solver, const uint8_t *on
   else
     unknowns_each_row(&u, add_row, &s);
   return s.sum;
+}
+
+typedef struct Each { /* sums of each load */
+  Summing summing;
+  bool several; /* supports that mirror: what images do is found by bonds */
+  double (*force)[3];
+} Each;
+
+static void add_row_of_each(const Constraint *c, int64_t n, void *context)
+{
+  const Each *each = context;
+  const Solver *s = each->summing.solver;
+  if (c->row) return;
+  double along = take_row(&each->summing, c, c->load->selection.places[n]);
+  if (each->several && c->images) return;
+  if (s->type->inertia && !c->images) along += s->type->inertia(s, c, n);
+  double share = 1;
+  for (int m = 0; c->platen && m < c->platen->leaders; ++m) share -= c->platen->share[m][n];
+  along *= share; /* the centre of a platen takes what its leaders leave */
+  for (int k = 0; k < 3; ++k) each->force[c->load - s->loading->loads][k] += along * c->direction[k];
+}
+
+void reactions_of_each(const Reactions *r, const Solver *solver, double (*force)[3])
+{
+  const Unknowns u = unknowns_of(solver->domain, solver->loading);
+  Each each = {{.force = r->force, .solver = solver}, several_mirror(solver->loading), force};
+  for (int l = 0; l < solver->loading->count; ++l)
+    for (int k = 0; k < 3; ++k) force[l][k] = 0;
+  unknowns_each_row(&u, note_row, &each.summing);
+  unknowns_each_row(&u, add_row_of_each, &each);
+  if (each.several) add_images_of_each(solver->domain, solver->loading, force);
 }
 
 Wrench reactions_of_loads(const Solver *solver, const double about[3])

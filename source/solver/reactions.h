@@ -7,7 +7,7 @@
 #include "solver/solver.h"
 
 typedef struct Reactions {
-  double *force[MOTIONS]; /* on held particles, what is left of it while they are gone through */
+  double *force[MOTIONS]; /* on held particles, what is left of it while they are gone through; untouched elsewhere */
 } Reactions;
 
 /** A sum of forces, and its moment about a point. */
@@ -28,6 +28,10 @@ void reactions_destroy(Reactions *reactions);
  *                    now; of supports that mirror, of their faces */
 Wrench reactions_sum(const Reactions *reactions, const Solver *solver, const uint8_t *on, const char *load,
                      const double *about);
+
+/** Finds what the motions of each load exert in the state held, as reactions_sum does.
+ *  @param[out] force  [loads]; 0 of loads that prescribe no motion or do not act */
+void reactions_of_each(const Reactions *reactions, const Solver *solver, double (*force)[3]);
 
 /** Sum of the forces of loads on the particles of the body, springs and gravity among them. */
 Wrench reactions_of_loads(const Solver *solver, const double about[3]);

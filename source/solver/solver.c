@@ -2,6 +2,7 @@
 
 #include "base/trap.h"
 #include "solver/distortion.h"
+#include "solver/resultants.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -178,6 +179,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
   int status = check_laws(s, error);
+  if (!status) status = resultants_create(s, error);
   if (!status) status = check_controlled(s, error);
   if (!status) status = solver_enter(s, 0, error);
   if (!status) status = s->type->plan(s, warning, error);
@@ -194,6 +196,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
 void solver_destroy(Solver *s)
 {
   if (s->own) s->type->destroy(s);
+  resultants_destroy(s);
   free(s->records);
   text_free(&s->log);
   *s = (Solver){0};
@@ -423,6 +426,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   int status = trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, s->reader->units, error);
   if (!status && solver_looks_at_distortion(s) && (status = distortion_watch(s->domain, &s->clock, error)))
     ledger_give_up(&s->ledger);
+  if (!status) resultants_note(s);
   return status;
 }
 
@@ -498,6 +502,7 @@ void solver_state(Solver *s, StateList *list)
       list,
       &(StateRow){.unit = "1", .role = STATE_COMMITTED, .count = STAGE_NUMBERS * clock->stages, .values = s->records},
       "stages", NULL);
+  resultants_state(s, list);
   loading_state(s->loading, list);
   ledger_state(&s->ledger, list);
   s->type->state(s, list);

@@ -25,6 +25,7 @@ typedef struct SolveSpec {
 extern const Section solve_section;
 
 typedef struct SolverType SolverType;
+typedef struct Resultants Resultants; /* solver/resultants.h */
 
 /** What a step takes, about. */
 typedef struct StepCost {
@@ -66,6 +67,7 @@ typedef struct Solver {
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
   int64_t stop_count;
   StageRecord *records;   /* [stages] */
+  Resultants *resultants; /* NULL: no motion is prescribed, and nothing follows displacements */
   Text log;               /* how the equations of the last step were solved, a line each; empty where there were none */
   const SolverType *type; /* of the stage under way */
   const SolveSpec *stage;

@@ -77,7 +77,7 @@ contains "rod: end" "$(cat out)" "finished at step $steps of $steps, time 1 ms; 
 contains "rod: step" "$(cat out)" "$steps steps of $(figures $s time_step) ms ($(awk -v a="$(figures $s time_step)" -v b="$(figures $s stable_time_step)" 'BEGIN {printf "%.2f of the stable %.4g", a / b, b}')), "
 near "rod: time of a bond" "$(figures $s ns_per_directed_bond_step)" "$(awk -v t="$(figures $s wall_seconds)" -v b="$(figures $s bonds)" -v n="$steps" 'BEGIN {print 1e9 * t / (2 * b * n)}')" 0.02
 # a load of 20 ms has come to a twentieth after one; what does not end is as large as it is at the end of the run
-contains "rod: load without a name" "$(cat $s)" '{"name": "", "line": 13, "kind": "body force", "peak": 5e-08, "unit": "N/mm3"}'
+contains "rod: load without a name" "$(cat $s)" '{"name": "", "line": 13, "kind": "body force", "peak": 5e-08, "unit": "N/mm3", "largest_force": [0, '
 # energies: what is put in is what is there, and the words are those of the file, in joules
 near "rod: energies" "$(figures $s external)" "$(awk -v k="$(figures $s kinetic)" -v s="$(figures $s stored)" -v d="$(figures $s dissipated)" 'BEGIN {printf "%.12g", k + s + d}')" 1e-3
 near "rod: internal energy" "$(figures $s internal)" "$(awk -v s="$(figures $s stored)" -v d="$(figures $s dissipated)" 'BEGIN {printf "%.12g", s + d}')" 1e-9
@@ -145,8 +145,12 @@ stage 'slow': steps 0 to 4, time 0 to 1 s
 stage 'fast': steps 4 to 44, time 1 to $(printf %.6g "$end") s
 load 'pull': traction, peak 1 kPa
 load 'more': body force, peak 1 kN/m3
+force in all on the body, the largest (of explicit steps every tenth) and at the end:
+  load 'pull': [0.16, 0, 0] kN, [0.16, 0, 0] kN
+  load 'more': [0, -0.024, 0] kN, [0, -0.024, 0] kN
   staged/solution.txt
 Y
+contains "stages: forces" "$(cat $s)" '"peak": 1, "unit": "kPa", "largest_force": [0.16, 0, 0], "force_at_end": [0.16, 0, 0]}'
 lines "stages: summary" $s <<Y
   "title": "Two stages",
   "completed": true,
@@ -211,6 +215,11 @@ sed '/name: fast/d' staged.yaml > rest.yaml
 s=rest/summary.json
 grep -q "^stage\|^at rest" out && [ "$(grep -c '^stage' out)" != 0 ] && fail "one stage is told as several: $(cat out)"
 contains "at rest" "$(cat out)" "at rest: forces out of balance are "
+lines "at rest: forces" out <<'Y'
+force in all on the body, the largest and at the end:
+  load in line 7: [-0.16, 0, 0] kN at time 0.5 s, [-0.16, 0, 0] kN
+  load 'pull': [0.16, 0, 0] kN, [0.16, 0, 0] kN
+Y
 contains "at rest: supports" "$(cat out)" "supports and prescribed motions exert [-0.16, "
 contains "at rest: loads" "$(cat out)" "kN, loads [0.16, 0, 0]; of all these forces "
 read -r x y z <<< "$(figures $s reactions)"
@@ -464,6 +473,16 @@ near "pull: fracture" "$(figures $s fracture)" 15 0.01
 near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
 near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
 contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0]}'
+# ---- a bar of four bonds that is pressed by 0.04 mm: E times 0.001 ----
+sed -e 's/elastic-1d/exponential-softening, tensile strength: 3 MPa, fracture energy: 100 N\/m/; s/particles: .2, 1./particles: [5, 1]/; /^failure/d' \
+  -e 's/velocity: .0.1, free./displacement: [-0.04, free], history: {table: [[0, 0], [0.5, 1], [1, 0.5]]}/; s/^solve.*/solve: {static: {increments: 4}}/' \
+  -e 's/^pictures/results: {every: 1}\n&/' pull.yaml > press.yaml
+"$breccia" run press.yaml > out 2> errors || fail "press: $(cat errors)"
+lines "press: forces" out <<'Y'
+force in all on the body, the largest and at the end:
+  load in line 5: [3000, 0, 0] N at time 0.5 ms, [1500, 0, 0] N
+  load in line 5: [-3000, 0, 0] N at time 0.5 ms, [-1500, 0, 0] N
+Y
 # what stands at a rounding beside 0 is told as 0, one bond as one, and works below roundings of strains have no imbalance
 "$breccia" run pull.yaml --set 'body.b.shape.box.first particle=[-5.00000000000001, 0]' --output around > out 2> errors || fail "around: $(cat errors)"
 contains "around: first broken bond" "$(cat out)" "near [0, 0, 0] mm; "

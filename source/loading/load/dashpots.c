@@ -191,6 +191,16 @@ static void settle(Load *load, const Particles *p, double *const moved[3], doubl
   }
 }
 
+/** Adds what stands at the end of the last step (settle), and what the motion of the outcrop asks for then. */
+static void exerts(Load *load, const Particles *p, double time, double sum[3])
+{
+  Dashpots *own = load->own;
+  find_outcrop(load, time);
+  for (int64_t n = 0; n < load->selection.count; ++n)
+    for (int k = 0; k < 3; ++k)
+      sum[k] += p->volume[load->selection.places[n]] * (rate_of(own, k, n) * own->outcrop[k] + own->drag[k][n]);
+}
+
 static void add_change(const Load *load, const Particles *p, double *const v[3], double *const change[3])
 {
   (void)p;
@@ -283,6 +293,7 @@ const LoadType dashpots_load = {.create = create,
                                 .begin = begin,
                                 .brake = brake,
                                 .settle = settle,
+                                .exerts = exerts,
                                 .change = add_change,
                                 .point_count = point_count,
                                 .point = find_point,

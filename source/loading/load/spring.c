@@ -166,6 +166,22 @@ static void force(const Load *load, Particles *p, double factor)
   }
 }
 
+/** Adds the force on the particles themselves; those at the other end take the opposite one. */
+static void exerts(Load *load, const Particles *p, double time, double sum[3])
+{
+  (void)time;
+  const Spring *spring = load->own;
+  double change[3];
+  for (int64_t n = 0; !joins(load) && n < load->selection.count; ++n) {
+    change_at(load, p, n, change);
+    const double share = p->volume[load->selection.places[n]] / load->volume;
+    for (int k = 0; k < 3; ++k) sum[k] -= spring->stiffness * share * change[k];
+  }
+  if (!joins(load)) return;
+  change_between(load, p, change);
+  for (int k = 0; k < 3; ++k) sum[k] -= spring->stiffness * change[k];
+}
+
 static void add_change(const Load *load, const Particles *p, double *const v[3], double *const change[3])
 {
   const Spring *spring = load->own;
@@ -323,6 +339,7 @@ const LoadType spring_load = {.timeless = true,
                               .destroy = destroy,
                               .vector = vector,
                               .force = force,
+                              .exerts = exerts,
                               .begin = begin,
                               .change = add_change,
                               .point_count = point_count,

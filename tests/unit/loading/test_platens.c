@@ -3,6 +3,7 @@
 #include "support.h"
 
 #include "solver/reactions.h"
+#include "solver/resultants.h"
 
 #define MATERIAL                                                                                                       \
   "units: {length: mm, force: kN, time: ms}\n"                                                                         \
@@ -49,6 +50,9 @@ static void check_platen(breccia_model *m, double moved, double force, double to
 {
   const Wrench w = wrench_of(m, "jack");
   assert_near(w.force[1], force, tolerance * fabs(force));
+  Resultant resultants[3];
+  assert_int_equal(resultants_find(&m->solver, resultants, NULL), 0);
+  assert_near(resultants[2].now[1], w.force[1], 1e-9 * fabs(force));
   assert_near(w.moment[2], 0, 2e-2 * fabs(force)); /* kN mm: the strain of the patch changes arms of 30 mm */
   const double left = moved_at(m, first, 75), right = moved_at(m, last, 75);
   for (double x = first; x < last; x += 10)

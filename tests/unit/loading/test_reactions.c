@@ -3,6 +3,7 @@
 
 #include "solver/reactions.h"
 #include "solver/rest.h"
+#include "solver/resultants.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 
@@ -82,8 +83,11 @@ static void each_of_several_walls_carries_its_own(void **state)
     const double wanted[] = {-1 * 0.5 * 0.4, 3 * 0.6 * 0.4, 2 * 9.81 * 0.6 * 0.5 * 0.4};
     const double middle[] = {0.3, 0.25, 0.2};
     double sums[3] = {0};
+    Resultant resultants[6];
+    assert_int_equal(resultants_find(&model->solver, resultants, NULL), 0);
     for (int w = 0; w < 3; ++w) {
       const Wrench wall = sum_of(model, NULL, names[w], NULL);
+      for (int k = 0; k < 3; ++k) assert_near(resultants[w].now[k], wall.force[k], 1e-12);
       for (int k = 0; k < 3; ++k) {
         assert_near(wall.force[k], k == w ? wanted[k] : 0, 1e-8);
         sums[k] += wall.force[k];

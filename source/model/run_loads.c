@@ -1,0 +1,164 @@
+/* What loads and supports did in a run, for summary.json and in words: what they prescribed at the most, and the
+ * force in all that each exerted on the body, the largest and at the end (solver/resultants.h). */
+#include "model/run.h"
+
+#include "solver/resultants.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** The farthest from zero that a load has been; 0 before its stage. */
+static double run_loads_peak(const breccia_model *model, const Load *load)
+{
+  return resultants_peak_factor(&model->solver, load) * load_magnitude(load->spec);
+}
+
+/** Resultants of all loads, to be freed; NULL if they are not to be told: of a computation that has blown up, or
+ * memory is out. */
+static Resultant *run_loads_resultants(const breccia_model *model)
+{
+  if (ledger_has_blown_up(&model->solver.ledger)) return NULL;
+  Resultant *list = memory_plain((size_t)model->loading.count + 1, sizeof *list);
+  if (list && !resultants_find(&model->solver, list, NULL)) return list;
+  free(list);
+  return NULL;
+}
+
+/* ---- for summary.json ---- */
+
+static void run_loads_add_number(Text *t, const char *key, double value)
+{
+  if (isfinite(value))
+    text_add(t, ", \"%s\": %.10g", key, value);
+  else
+    text_add(t, ", \"%s\": null", key);
+}
+
+static void run_loads_add_vector(Text *t, const char *key, const double v[3])
+{
+  text_add(t, ", \"%s\": [%.10g, %.10g, %.10g]", key, v[0], v[1], v[2]);
+}
+
+static void run_loads_add(const breccia_model *model, const Load *load, const Resultant *resultant, Text *t)
+{
+  const char *dimension, *kind = load_kind(load->spec, &dimension);
+  char unit[64];
+  units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+  text_add(t, "{\"name\": ");
+  text_add_json(t, load->spec->name ? load->spec->name : "");
+  text_add(t, ", \"line\": %d, \"kind\": \"%s\"", load->spec->head.node->line, kind);
+  run_loads_add_number(t, "peak", run_loads_peak(model, load));
+  text_add(t, ", \"unit\": ");
+  text_add_json(t, unit);
+  if (resultant && resultant->exerts) {
+    run_loads_add_vector(t, "largest_force", resultant->largest);
+    if (!isnan(resultant->time)) run_loads_add_number(t, "time_of_largest_force", resultant->time);
+    run_loads_add_vector(t, "force_at_end", resultant->now);
+  }
+  text_add(t, "}");
+}
+
+void run_add_loads(const breccia_model *model, Text *t)
+{
+  Resultant *resultants = run_loads_resultants(model);
+  text_add(t, "  \"loads\": [");
+  for (int k = 0; k < model->loading.count; ++k) {
+    if (k) text_add(t, ", ");
+    run_loads_add(model, &model->loading.loads[k], resultants ? &resultants[k] : NULL, t);
+  }
+  text_add(t, "],\n");
+  free(resultants);
+}
+
+/* ---- in words ---- */
+
+/** Adds the name of a load, or where it stands in the deck if it has none; loads of one name are told apart by their
+ * stages. */
+static void run_loads_name(const breccia_model *model, const Load *load, Text *t)
+{
+  const char *name = load->spec->name;
+  int alike = 0; /* loads of one name, which take each other's place */
+  char stage[64];
+  if (!name) {
+    text_add(t, "load in line %d", load->spec->head.node->line);
+    return;
+  }
+  for (int k = 0; k < model->loading.count; ++k) {
+    const char *other = model->loading.loads[k].spec->name;
+    alike += other && !strcmp(other, name);
+  }
+  text_add(t, "load '%s'", name);
+  if (alike > 1) text_add(t, " of stage '%s'", solver_stage_name(&model->solver, load->first, stage, sizeof stage));
+}
+
+static void run_loads_tell(const breccia_model *model, const Load *load, Text *t)
+{
+  const char *dimension, *kind = load_kind(load->spec, &dimension);
+  run_loads_name(model, load, t);
+  text_add(t, ": %s", kind);
+  if (load->first > model->solver.clock.stage)
+    text_add(t, ", has not begun");
+  else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    text_add(t, ", peak %.6g%s%s", run_loads_peak(model, load), *unit ? " " : "", unit);
+  }
+  text_add(t, "\n");
+}
+
+/** @param[in] size  of the largest; components far below are round-off and what a residual leaves */
+static void run_loads_tell_force(const double force[3], double size, const char *unit, Text *t)
+{
+  double v[3];
+  for (int k = 0; k < 3; ++k) v[k] = fabs(force[k]) < 1e-6 * size ? 0 : force[k];
+  text_add(t, "[%.4g, %.4g, %.4g]%s%s", v[0], v[1], v[2], *unit ? " " : "", unit);
+}
+
+static void run_loads_tell_resultant(const breccia_model *model, const Load *load, const Resultant *r, Text *t)
+{
+  char force[64], time[64];
+  units_name(model->units, dimension_find("force"), force, sizeof force);
+  units_name(model->units, dimension_find("time"), time, sizeof time);
+  const double *f = r->largest, size = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  text_add(t, "  ");
+  run_loads_name(model, load, t);
+  text_add(t, ": ");
+  run_loads_tell_force(f, size, force, t);
+  if (!isnan(r->time) && size > 0) text_add(t, " at time %.6g %s", r->time, time);
+  text_add(t, ", ");
+  run_loads_tell_force(r->now, size, force, t);
+  text_add(t, "\n");
+}
+
+/** True if some stage up to the one under way has many short steps, not all of which are looked at. */
+static bool run_loads_have_gaps(const Solver *s)
+{
+  bool gaps = false;
+  for (int64_t k = 0; k <= s->clock.stage; ++k) gaps |= !solver_step_was_long(s, (int64_t)s->records[k].last_step);
+  return gaps;
+}
+
+void run_tell_loads(const breccia_model *model, Text *t)
+{
+  enum { FEW = 12 }; /* of more loads only those with names */
+  const int count = model->loading.count;
+  const Load *loads = model->loading.loads;
+  Resultant *resultants = run_loads_resultants(model);
+  int told = 0, quiet = 0;
+  for (int k = 0; k < count; ++k)
+    if (loads[k].spec->name) run_loads_tell(model, &loads[k], t);
+  for (int k = 0; k < count && resultants; ++k) {
+    const Resultant *r = &resultants[k];
+    if (!r->exerts || loads[k].first > model->solver.clock.stage) continue;
+    if (count > FEW && !loads[k].spec->name) {
+      ++quiet;
+      continue;
+    }
+    if (!told++)
+      text_add(t, "force in all on the body, the largest%s and at the end:\n",
+               run_loads_have_gaps(&model->solver) ? " (of explicit steps every tenth)" : "");
+    run_loads_tell_resultant(model, &loads[k], r, t);
+  }
+  if (quiet) text_add(t, "  %d loads without names: summary.json tells each\n", quiet);
+  free(resultants);
+}
