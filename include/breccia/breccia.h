@@ -140,6 +140,9 @@ typedef struct breccia_law {
   const char *(*history_dimension)(const void *constants, int k);
   /** 1: history number k is a damage, from 0 to 1, and a bond that is broken counts as 1 in the mean over a family. NULL: none is. */
   int (*history_is_damage)(const void *constants, int k);
+  /** 1: no compression is too large for it, so that the last words of a run tell the largest one. NULL: it yields,
+   * crushes, or nobody knows. */
+  int (*never_crushes)(const void *constants);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

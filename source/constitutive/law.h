@@ -31,6 +31,13 @@ static inline void uniaxial_moduli(double young, double *bulk, double *shear)
   *shear = young / 2.5;
 }
 
+/** `never_crushes` of laws that are elastic in compression, whatever their constants. */
+static inline int law_never_crushes(const void *constants)
+{
+  (void)constants;
+  return 1;
+}
+
 /** Parameters of a table under one name, for laws. */
 #define LAW_PARAMETERS(table) .parameters = (table), .parameter_count = (int)(sizeof(table) / sizeof *(table))
 

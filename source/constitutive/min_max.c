@@ -61,6 +61,12 @@ static int history_is_damage(const void *constants, int k)
   return c->base.law->history_is_damage && c->base.law->history_is_damage(c->base.constants, k);
 }
 
+static int never_crushes(const void *constants)
+{
+  const MinMax *c = constants;
+  return isinf(c->smallest) && c->base.law->never_crushes && c->base.law->never_crushes(c->base.constants);
+}
+
 static void begin(const void *constants, double *history)
 {
   const MinMax *c = constants;
@@ -114,6 +120,7 @@ const breccia_law law_min_max = {
     .history_name = history_name,
     .history_dimension = history_dimension,
     .history_is_damage = history_is_damage,
+    .never_crushes = never_crushes,
     .begin = begin,
     .update = update,
 };

@@ -249,6 +249,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
   domain_leave_tensors(&model->domain, true);
   status = solver_create(&model->solver, &model->warnings, error);
   domain_leave_tensors(&model->domain, false);
+  if (!status) status = model_make_compressions(model, error);
   if (!status) status = model_make_schedule(model, true, error);
   for (int p = 0; !status && p < spec->pictures.count; ++p) {
     const PictureSpec *picture = spec->pictures.items[p];
@@ -374,6 +375,8 @@ void breccia_model_destroy(breccia_model **out)
     places_free(&model->left_displacement[k]);
     places_free(&model->left_velocity[k]);
   }
+  free(model->compressions.stress);
+  free(model->compressions.at);
   free(model->schedule);
   free(model->stops);
   free(model->own_laws);

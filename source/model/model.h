@@ -14,6 +14,12 @@ typedef struct Peaks { /* over all states written; infinite mean stresses: none 
   double strain_low, strain_high;
 } Peaks;
 
+/** The largest compressions that materials without a limit to it have reached, in the states written and at the end. */
+typedef struct Compressions {
+  double *stress;  /* [materials] the smallest principal stress; NULL: all materials have a limit */
+  double (*at)[3]; /* [materials] where its particle stood at first */
+} Compressions;
+
 struct breccia_model {
   Text deck;                   /* as it is run: nothing in it is left to work out */
   const char *const *settings; /* with which it was loaded */
@@ -46,6 +52,7 @@ struct breccia_model {
   int64_t log_bytes;     /* of solution.txt, with what was told of all steps so far */
   int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
+  Compressions compressions;
   double run_seconds;
   int64_t run_steps;
   const volatile int *interrupted; /* of breccia_options */
@@ -87,6 +94,15 @@ double model_stage_error(const breccia_model *model, int64_t stage);
 
 /** Rows of the whole state: of the domain, the solver, the largest values so far and how far results are written. */
 void model_state(breccia_model *model, StateList *list);
+
+/** Whether a material fails in tension and in no compression, however large. */
+bool model_never_crushes(const breccia_model *model, int material);
+/** Makes room for the largest compressions of materials. */
+int model_make_compressions(breccia_model *model, Error *error);
+/** Takes them back to those of a model that has written no state. */
+void model_forget_compressions(breccia_model *model);
+/** Notes the stress of a particle at a place. */
+void model_note_compression(breccia_model *model, int32_t place, const double stress[6]);
 
 /** Holds the names of fields, components, histories and columns that the deck asks for against what there is. */
 int model_check_results(breccia_model *model);

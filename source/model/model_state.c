@@ -29,6 +29,17 @@ void model_state(breccia_model *model, StateList *list)
   solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)
     state_add_number(list, largest[k].name, largest[k].unit, STATE_COMMITTED, largest[k].value);
+  const int64_t materials = model->domain.material_count;
+  if (model->compressions.stress) {
+    state_add(list,
+              &(StateRow){
+                  .unit = "stress", .role = STATE_COMMITTED, .count = materials, .values = model->compressions.stress},
+              "largest compressions", NULL);
+    state_add(list,
+              &(StateRow){
+                  .unit = "length", .role = STATE_COMMITTED, .count = 3 * materials, .values = model->compressions.at},
+              "places of largest compressions", NULL);
+  }
   state_add(list,
             &(StateRow){.unit = "1",
                         .kind = STATE_COUNTS,

@@ -331,6 +331,7 @@ static void describe_material(const breccia_model *model, int k, Text *text)
     quantity_describe(young * limit, "Pa", text);
     text_add(text, ")");
   }
+  if (model_never_crushes(model, k)) text_add(text, ", no limit in compression");
   text_add(text, "\n");
 }
 

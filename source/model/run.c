@@ -44,6 +44,7 @@ static void update_peaks(breccia_model *model)
     peaks->mean_low = fmin(peaks->mean_low, (s[XX] + s[YY] + s[ZZ]) / 3);
     peaks->mean_high = fmax(peaks->mean_high, (s[XX] + s[YY] + s[ZZ]) / 3);
     peaks->damage = fmax(peaks->damage, domain_damage(d, place));
+    model_note_compression(model, place, s);
   }
   run_note_strains(model);
 }

@@ -266,6 +266,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     add_number(&t, peaks[k].key, peaks[k].value);
   }
   text_add(&t, "},\n");
+  run_add_compressions(model, &t);
   run_add_loads(model, &t);
   text_add(&t, "  \"units\": {");
   static const char *const units[][2] = {{"times", "time"},          {"positions and displacements", "length"},
@@ -483,6 +484,7 @@ void run_tell_outcome(Run *run, int status)
     if (d->failure.criterion || peaks->damage > 0) text_add(t, ", damage %.3g", peaks->damage);
     text_add(t, "\n");
   }
+  if (!blown_up) run_tell_compressions(model, t);
   if (!blown_up) tell_control(d, e.stored, t);
   if (!blown_up) run_tell_strains(model, t);
   if (!blown_up) run_tell_bars(model, t);

@@ -473,11 +473,17 @@ near "pull: fracture" "$(figures $s fracture)" 15 0.01
 near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
 near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
 contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0]}'
-# ---- a bar of four bonds that is pressed by 0.04 mm: E times 0.001 ----
+grep -q "cannot crush" out && fail "what was never pressed is told: $(cat out)"
+# ---- a bar of four bonds that is pressed by 0.04 mm: E times 0.001, and nothing crushes it ----
 sed -e 's/elastic-1d/exponential-softening, tensile strength: 3 MPa, fracture energy: 100 N\/m/; s/particles: .2, 1./particles: [5, 1]/; /^failure/d' \
   -e 's/velocity: .0.1, free./displacement: [-0.04, free], history: {table: [[0, 0], [0.5, 1], [1, 0.5]]}/; s/^solve.*/solve: {static: {increments: 4}}/' \
   -e 's/^pictures/results: {every: 1}\n&/' pull.yaml > press.yaml
+"$breccia" check press.yaml > out 2> errors || fail "press: $(cat errors)"
+contains "press: check" "$(cat out)" ", no limit in compression"
 "$breccia" run press.yaml > out 2> errors || fail "press: $(cat errors)"
+contains "press" "$(cat out)" "material 'm' cannot crush ('exponential-softening' is elastic in compression): the largest compression is 30 MPa, at ["
+s=press/summary.json
+near "press: largest" "$(figures $s compression)" 30 2e-3
 lines "press: forces" out <<'Y'
 force in all on the body, the largest and at the end:
   load in line 5: [3000, 0, 0] N at time 0.5 ms, [1500, 0, 0] N

@@ -40,7 +40,7 @@ BODIES = {
     "cap": (f"model: cap, {ELASTIC}, envelope strength: 2 MPa, cap ratio: 4, cap position: 9 MPa, largest compaction: 0.05, compaction rate: 1e-5 1/kPa, "
             "tension cut-off: 2 MPa", "formulation: correspondence, space: plane strain", "", ""),
     "drucker-prager": (f"model: drucker-prager, {ELASTIC}, cohesion: 2 MPa, friction angle: 30 deg", CORRESPONDENCE, "", ""),
-    "mohr-coulomb": (f"model: mohr-coulomb, {ELASTIC}, cohesion: 2 MPa, friction angle: 30 deg", CORRESPONDENCE, "", ""),
+    "mohr-coulomb": (f"model: mohr-coulomb, {ELASTIC}, cohesion: 2 MPa, friction angle: 30 deg, dilation angle: 30 deg, tensile strength: 3.46 MPa", CORRESPONDENCE, "", ""),
     "bounding-surface-clay": (f"model: bounding-surface-clay, {ELASTIC}, undrained strength: 2 MPa, hardening modulus: 12 GPa", CORRESPONDENCE,
                               "failure: {critical stretch: 3e-4, near grips: hold}\n", ""),
     "damage-plasticity": (f"model: damage-plasticity, {ELASTIC}, tensile strength: 3 MPa, compressive strength: 30 MPa, fracture energy: 100 N/m", CORRESPONDENCE, "", ""),

@@ -106,12 +106,12 @@ Material sample_coulomb(void)
 static Material coulomb_tip(void)
 {
   return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
-                     NULL);
+                     "dilation angle=30", "tensile strength=34.64101615137755", NULL);
 }
 static Material tresca(void)
 {
   return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=0",
-                     NULL);
+                     "tensile strength=1e6", NULL);
 }
 static void principal(const double s[6], double *most, double *least)
 {

@@ -46,4 +46,5 @@ const breccia_law law_elastic = {
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .update = update,
+    .never_crushes = law_never_crushes,
 };

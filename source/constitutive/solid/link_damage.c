@@ -148,6 +148,12 @@ static int update(const void *constants, const breccia_batch *batch)
   return ((const LinkLaw *)constants)->update(constants, batch);
 }
 
+/** Without a compressive stretch. */
+static int never_crushes(const void *constants)
+{
+  return isinf(((const LinkLaw *)constants)->link.compression_begin) != 0;
+}
+
 const breccia_law law_link_damage = {
     .size = sizeof(breccia_law),
     .name = "link-damage",
@@ -177,4 +183,5 @@ const breccia_law law_link_damage = {
     .history_is_damage = history_is_damage,
     .update = update,
     .link = find_link,
+    .never_crushes = never_crushes,
 };

@@ -14,8 +14,12 @@ static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
     {"cohesion", "stress", NULL, "(0, inf)", "c"},
     {"friction angle", "angle", NULL, "[0, 80]", "phi"},
-    {"dilation angle", "angle", "", "[0, 80]", "psi; the friction angle when absent"},
-    {"tensile strength", "stress", "", "(0, inf)", "largest principal stress; the tip of the pyramid when absent"},
+    {"dilation angle", "angle", "0", "[0, 80]",
+     "psi; that of most soil is far below the friction angle, with which the volume would grow without end as it "
+     "flows, and confined soil bear too much"},
+    {"tensile strength", "stress", "0", "[0, inf)",
+     "largest principal stress, c cot(phi) at most, the tip of the pyramid; soil bears next to none, as a cohesion of "
+     "shear is none of tension"},
 };
 
 /** Normal of a plane, or with the dilation angle's sine its direction of flow; the cut-off's are one. */
@@ -31,7 +35,7 @@ static void normal_of(int plane, double sine, double normal[3])
   normal[smaller[plane]] = -(1 - sine);
 }
 
-/** What all trial stresses share that return to a set of planes. A set with the cut-off has none where there is no cut-off. */
+/** What all trial stresses share that return to a set of planes. */
 static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
@@ -39,7 +43,6 @@ static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
   CoulombReturn out = {.exists = false};
   for (int r = 0; r < set->count; ++r) {
     double normal[3], flow[3];
-    if (set->plane[r] >= TENSION1 && isinf(c->tensile)) return out;
     normal_of(set->plane[r], c->sine, normal);
     normal_of(set->plane[r], c->dilation, flow);
     right[r][3 + r] = 1;
@@ -78,9 +81,9 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
   const double degree = acos(-1) / 180, tip = v[FRICTION] > 0 ? v[COHESION] / tan(v[FRICTION] * degree) : INFINITY;
   c->sine = sin(v[FRICTION] * degree);
-  c->dilation = isnan(v[DILATION]) ? c->sine : sin(v[DILATION] * degree);
+  c->dilation = sin(v[DILATION] * degree);
   c->limit = 2 * v[COHESION] * cos(v[FRICTION] * degree);
-  c->tensile = isnan(v[TENSILE]) ? tip : v[TENSILE];
+  c->tensile = v[TENSILE];
   c->update = mohr_coulomb_update_chosen();
   for (int k = 0; k < COULOMB_SETS; ++k) c->returns[k] = return_to(c, &coulomb_sets[k]);
   if (c->dilation > c->sine) {
@@ -109,8 +112,11 @@ const breccia_law law_mohr_coulomb = {
     .about = "soil and rock: the hexagonal pyramid with a tension cut-off, associated or not, perfectly plastic",
     .source = "de Souza Neto, Peric and Owen 2008, ch. 8",
     .maturity = "verified against its closed forms",
-    .equations = "σ₁ − σ₃ + (σ₁ + σ₃) sin φ ≤ 2 c cos φ, σ₁ ≤ f_t, tension positive, σ₁ ≥ σ₂ ≥ σ₃\n"
-                 "flow with ψ instead of φ on the pyramid, normal to the cut-off; no hardening",
+    .equations =
+        "σ₁ − σ₃ + (σ₁ + σ₃) sin φ ≤ 2 c cos φ, σ₁ ≤ f_t, tension positive, σ₁ ≥ σ₂ ≥ σ₃\n"
+        "flow with ψ instead of φ on the pyramid, normal to the cut-off; no hardening\n"
+        "ψ and f_t are 0 unless given: dilation by φ would not end and make confined soil too strong, and soil "
+        "bears next to no tension",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(MohrCoulomb),
     .components = 6,

@@ -36,7 +36,7 @@ typedef struct CoulombReturn {
 typedef struct MohrCoulomb {
   Elasticity elastic;
   double sine, dilation, limit;        /* sin(phi), sin(psi), 2 c cos(phi) */
-  double tensile;                      /* infinite: no cut-off */
+  double tensile;                      /* of the cut-off */
   CoulombReturn returns[COULOMB_SETS]; /* in the order in which they are tried */
   SolidUpdate *update;                 /* for the vectors of this machine */
 } MohrCoulomb;

@@ -88,4 +88,5 @@ const breccia_law law_viscoelastic = {
     .update = update,
     .deviator = deviator_of,
     .takes_time = 1,
+    .never_crushes = law_never_crushes,
 };

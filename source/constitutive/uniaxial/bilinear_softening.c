@@ -49,4 +49,5 @@ const breccia_law law_bilinear_softening = {
     .history_name = softening_history_name,
     .history_is_damage = softening_history_is_damage,
     .update = update,
+    .never_crushes = law_never_crushes,
 };

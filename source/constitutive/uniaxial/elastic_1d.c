@@ -45,4 +45,5 @@ const breccia_law law_elastic_1d = {
     .prepare = prepare,
     .moduli = moduli,
     .update = update,
+    .never_crushes = law_never_crushes,
 };

@@ -95,4 +95,5 @@ const breccia_law law_elastic_brittle = {
     .history_name = history_name,
     .history_is_damage = history_is_damage,
     .update = update,
+    .never_crushes = law_never_crushes,
 };

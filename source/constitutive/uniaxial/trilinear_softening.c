@@ -69,4 +69,5 @@ const breccia_law law_trilinear_softening = {
     .history_name = softening_history_name,
     .history_is_damage = softening_history_is_damage,
     .update = update,
+    .never_crushes = law_never_crushes,
 };

@@ -260,7 +260,7 @@ static void corners_are_found_near_constant_volume(void **state)
   breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
                               "materials: {m: {model: mohr-coulomb, density: 2, Young modulus: 1e4, Poisson ratio: "
                               "0.49999, cohesion: 6, friction "
-                              "angle: 30 deg, dilation angle: 10 deg}}\n"
+                              "angle: 30 deg, dilation angle: 10 deg, tensile strength: 10.392}}\n"
                               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
                               "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings}\n"
                               "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+, layers: "

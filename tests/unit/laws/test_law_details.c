@@ -74,10 +74,10 @@ static void dilation_that_is_not_given_is_what_the_manual_says(void **state)
     double dilatancy, tolerance;
   } cases[] = {
       {material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30", NULL),
-       -2, 1e-6},
-      {material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
-                   "dilation angle=0", NULL),
        0, 1e-6},
+      {material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                   "dilation angle=30", NULL),
+       -2, 1e-6},
       {material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
                    NULL),
        -2, 1e-6},

@@ -198,7 +198,7 @@ static void mohr_and_coulomb_flow_on_planes_edges_and_corners(void **state)
   Material m = material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.23", "cohesion=20",
                            "friction angle=33", "dilation angle=11", "tensile strength=13", NULL),
            tip = material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.23", "cohesion=20",
-                             "friction angle=33", NULL);
+                             "friction angle=33", "dilation angle=33", "tensile strength=30.797299276291657", NULL);
   Pyramid c = {sin(33 * degree), sin(11 * degree), 40 * cos(33 * degree), 13, {{0}}},
           whole = {sin(33 * degree), sin(33 * degree), 40 * cos(33 * degree), 20 / tan(33 * degree), {{0}}};
   walk(&m, 3e-3, true, pyramid_obeys, &c);

@@ -209,6 +209,47 @@ static void every_law_that_remembers_is_among_these(void **state)
   }
 }
 
+/** Laws that say so carry E strain however far they are pressed; those that do not carry far less than that, or
+ * nothing. */
+static void what_never_crushes_says_so(void **state)
+{
+  (void)state;
+  int never = 0;
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    Point p = point_start(&m);
+    double stress = 0;
+    for (int n = 1; n <= 500; ++n) {
+      point_try(&p, (const double[]){-1e-4 * n}, &stress, NULL, 0);
+      point_commit(&p);
+    }
+    const bool elastic = fabs(stress / (material_young(&m) * -0.05) - 1) < 1e-9,
+               says = m.law->never_crushes && m.law->never_crushes(m.constants);
+    if (says != elastic) fail_msg("'%s' carries %g at -0.05", m.law_name, stress);
+    never += says;
+    point_stop(&p);
+    material_destroy(&m);
+  }
+  assert_int_equal(never, 4);
+  /* a smallest strain ends it; links are crushed beyond a compressive stretch */
+  const struct {
+    Material m;
+    bool never;
+  } others[] = {
+      {material_of("elastic-1d", "Young modulus=30e6", NULL), true},
+      {material_of("elastic-1d", "Young modulus=30e6", "largest strain=1e-3", NULL), true},
+      {material_of("elastic-1d", "Young modulus=30e6", "smallest strain=-1e-3", NULL), false},
+      {material_of("link-damage", "Young modulus=30e6", "Poisson ratio=0.2", "tensile stretch=1e-4", NULL), true},
+      {material_of("link-damage", "Young modulus=30e6", "Poisson ratio=0.2", "tensile stretch=1e-4",
+                   "compressive stretch=1e-3", NULL),
+       false}};
+  for (size_t k = 0; k < sizeof others / sizeof *others; ++k) {
+    Material m = others[k].m;
+    assert_int_equal(m.law->never_crushes(m.constants) != 0, others[k].never);
+    material_destroy(&m);
+  }
+}
+
 /** Whatever the strain and however many points: E strain, and nothing is remembered but where the point was. */
 static void the_elastic_stage_is_elastic(void **state)
 {
@@ -567,6 +608,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_law_that_remembers_is_among_these),
+      cmocka_unit_test(what_never_crushes_says_so),
       cmocka_unit_test(pulling_apart_spends_the_fracture_energy_over_the_length),
       cmocka_unit_test(softening_curves_go_through_their_points),
       cmocka_unit_test(softened_fibres_unload_to_the_origin_and_close_stiff),

@@ -226,7 +226,7 @@ static const struct {
      "deg, hardening modulus: 500",
      "correspondence", "[0, 0, 0.01]"},
     {"mohr-coulomb, Young modulus: 1e4, Poisson ratio: 0.25, cohesion: 6, friction angle: 20 deg, dilation angle: 20 "
-     "deg",
+     "deg, tensile strength: 16.484",
      "correspondence", "[0, 0, 0.01]"},
     {"multi-yield-j2, shear modulus: 4e3, bulk modulus: 6e3, octahedral strength: 12", "correspondence",
      "[0, 0, 0.01]"},
