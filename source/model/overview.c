@@ -89,6 +89,21 @@ static void add_duration(Text *text, double seconds)
     text_add(text, "%.1f h", seconds / 3600);
 }
 
+/** Returns true if stages to come may take more steps than the deck says: implicit ones cut steps that err by more than
+ *  'local error', static ones increments in which a law or bonds leave no equilibrium near. */
+static bool steps_may_be_cut(const breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const Clock *clock = &model->solver.clock;
+  const bool yields = !domain_is_elastic(d) || d->failure.criterion;
+  bool cut = false;
+  for (int64_t k = clock->stage; k < clock->stages; ++k) {
+    const SolveSpec *stage = model->solver.stages->items[k];
+    cut |= stage->of[SOLVER_implicit] || (stage->of[SOLVER_static] && yields);
+  }
+  return cut;
+}
+
 /** A line for each stage: what changes with it, and how it may end. */
 static void describe_stages(const breccia_model *model, const char *time, Text *text)
 {
@@ -104,8 +119,8 @@ static void describe_stages(const breccia_model *model, const char *time, Text *
     if (stage->loads.count) text_add(text, ", %d new load%s", stage->loads.count, stage->loads.count > 1 ? "s" : "");
     text_add(text, "\n");
   }
-  text_add(text, "%lld steps at most, the first of %.4g %s", (long long)(s->clock.steps - begin), s->clock.time_step,
-           time);
+  text_add(text, "%lld steps at %s, the first of %.4g %s", (long long)(s->clock.steps - begin),
+           steps_may_be_cut(model) ? "least" : "most", s->clock.time_step, time);
   if (isfinite(s->clock.stable))
     text_add(text, " (%.2f of the stable %.4g)", s->clock.time_step / s->clock.stable, s->clock.stable);
   if (!solver_foresees_steps(s)) text_add(text, ", besides those of explicit stages");
@@ -211,8 +226,11 @@ const char *breccia_model_overview(breccia_model *model)
     describe_stages(model, time, text);
   else
     s->type->describe(s, time, text);
+  const bool more = steps_may_be_cut(model);
+  if (more && s->clock.stages == 1)
+    text_add(text, ", at least %lld steps", (long long)(s->clock.steps - s->clock.step));
   text_add(text, ", %.0f MB, %s ", ((double)domain_bytes(d) + model->solver_bytes) / 1e6,
-           model->outlook.least ? "at least" : "about");
+           more || model->outlook.least ? "at least" : "about");
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (model->outlook.least && s->type->few_steps && domain_may_soften(d))

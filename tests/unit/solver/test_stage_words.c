@@ -28,7 +28,11 @@ static void solvers_say_what_they_will_do(void **state)
        {"static, 4 increments up to time 2.5 s, for 176 unknowns, by dynamic relaxation", NULL}},
       {"{implicit: {end time: 2, time step: 0.02}}",
        {"implicit, Newmark with beta 0.25 and gamma 0.5, 2 s by steps of at most 0.02 s", ", for 176 unknowns, by ",
-        NULL}},
+        ", at least 100 steps, "}},
+      /* local errors cut implicit steps; increments of elastic bodies are as many as asked for */
+      {"[{static: {increments: 4}}, {implicit: {end time: 1, time step: 0.1}}]",
+       {"14 steps at least, the first ", NULL}},
+      {"[{static: {increments: 4}}, {static: {increments: 3}}]", {"7 steps at most, the first ", NULL}},
       {"{implicit: {end time: 2, beta: 0.4, gamma: 0.6, damping: 3}}",
        {"implicit, Newmark with beta 0.4 and gamma 0.6, 2 s by steps of at most 0.02 s, damping 3 1/s (", NULL}},
       {"{implicit: {end time: 2, scheme: HHT, alpha: -0.1, stiffness damping: 0.004}}",
@@ -38,7 +42,7 @@ static void solvers_say_what_they_will_do(void **state)
         "stage '2': explicit, until rest (0.0001), at most 1 s, damping 5 1/s\n", NULL}}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     breccia_model *m = model_of(BODY LOADS "solve: %s\n", cases[c].solve);
-    for (int k = 0; cases[c].words[k]; ++k) has(breccia_model_overview(m), cases[c].words[k]);
+    for (int k = 0; k < 3 && cases[c].words[k]; ++k) has(breccia_model_overview(m), cases[c].words[k]);
     breccia_model_destroy(&m);
   }
 }
