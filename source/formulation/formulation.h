@@ -191,8 +191,8 @@ struct FormulationType {
   int (*point)(const void *formulation, int64_t number, Operator *point, Error *error);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
-  /** Returns true if laws take small strain, so that what is told of places must be such. NULL: laws take what the bonds
-   * say, and the strain of a place is told as Green-Lagrange. */
+  /** Returns true if laws take small strain, so that what is told of places must be such. NULL: laws take what the
+   * bonds say, and the strain of a place is told as Green-Lagrange. */
   bool (*takes_small_strain)(const void *formulation);
   /** [places] shares of its stress that the family of a place carries, beyond what its bonds allow: 1 as long as nothing breaks. They
    *  are state; after a change `renew` is called. NULL where bonds have energies of their own. */

@@ -11,7 +11,8 @@ typedef struct MeanMotion {
   double displacement, place[3];
 } MeanMotion;
 
-/** Finds the motion of a constraint. @return false: along no axis, not the same for all particles, or of unknown size */
+/** Finds the motion of a constraint. @return false: along no axis, not the same for all particles, or of unknown size
+ */
 static bool find_motion(const breccia_model *model, const Constraint *c, MeanMotion *motion)
 {
   const double straight = 1 - 1e-9, time = plausibility_time_of_load(model, c->load);
@@ -28,8 +29,8 @@ static bool find_motion(const breccia_model *model, const Constraint *c, MeanMot
   return true;
 }
 
-/** Mean strain, tensile above 0, by which two motions strain what stands between them, where that is most of the body; of
- * shear the largest principal one. */
+/** Mean strain, tensile above 0, by which two motions strain what stands between them, where that is most of the body;
+ * of shear the largest principal one. */
 static double strain_between(const Body *body, const MeanMotion *a, const MeanMotion *b)
 {
   const double most_of_it = 0.5, moved = a->displacement - b->displacement;

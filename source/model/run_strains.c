@@ -1,8 +1,9 @@
 /* Finite strain of laws that flow or soften: the largest strains of a run, and what they mean for its stresses.
  *
- * With `strain: green-lagrange` a law takes E = (F^T F - I) / 2 and answers the second Piola-Kirchhoff stress S. A fibre of
- * stretch l along a principal axis has E = (l^2 - 1) / 2. Where S is the strength s of a law that flows at constant volume,
- * the force per area of the undeformed body is l s, and the true stress is l^2 s = (1 + 2 E) s (docs/theory.md 4). */
+ * With `strain: green-lagrange` a law takes E = (F^T F - I) / 2 and answers the second Piola-Kirchhoff stress S. A
+ * fibre of stretch l along a principal axis has E = (l^2 - 1) / 2. Where S is the strength s of a law that flows at
+ * constant volume, the force per area of the undeformed body is l s, and the true stress is l^2 s = (1 + 2 E) s
+ * (docs/theory.md 4). */
 #include "model/run.h"
 
 #include "base/tensor.h"
@@ -46,9 +47,9 @@ static void note_place(const Domain *d, int32_t place, Peaks *peaks)
   }
 }
 
-/** Extends the range of strains by those of a material. Strains where next to nothing is carried, as in open cracks, mean nothing for
- * stresses: places count that carry a tenth of the largest stress of their material, and more than 1e-6 of its Young's
- * modulus. */
+/** Extends the range of strains by those of a material. Strains where next to nothing is carried, as in open cracks,
+ * mean nothing for stresses: places count that carry a tenth of the largest stress of their material, and more than
+ * 1e-6 of its Young's modulus. */
 static void note_material(breccia_model *model, int material)
 {
   const double carried = 0.1, least = 1e-6;

@@ -3,8 +3,9 @@
 #include "base/text.h"
 #include "base/whole_file.h"
 
-/** A field at one write: a dataset of its own, which the result file keeps as a view of the series. Tensors are rows of one
- * row each: VTK 9.7 takes two dimensions of a matrix for one matrix of the whole body, and 9.5 has vectors of three only. */
+/** A field at one write: a dataset of its own, which the result file keeps as a view of the series. Tensors are rows of
+ * one row each: VTK 9.7 takes two dimensions of a matrix for one matrix of the whole body, and 9.5 has vectors of three
+ * only. */
 static void add_field(Text *text, const XdmfSeries *series, const XdmfField *field, long long step)
 {
   const int k = field->components;

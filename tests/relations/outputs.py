@@ -120,6 +120,11 @@ def groups_of_summary(path):
                 elif key == "loads":
                     if item["peak"] is not None:
                         groups[f"{name}/{n}"] = Group("number", item["unit"], [[item["peak"]]], where, 10)
+                    for k in ("largest_force", "force_at_end"):
+                        if k in item:
+                            groups[f"{name}/{n}/{k}"] = Group("vector", units["forces"], [[float(v) for v in item[k]]], where, 10)
+                elif key == "largest_compressions":  # in the order of the particles; of equal ones the place is that of the first
+                    groups[f"{name}/{item['material']}"] = Group("number", units["stresses"], [[item["compression"]]], where, 10)
                 else:
                     walk(f"{name}/{n}", key, item, parent)
         elif key != "particles" or parent != "first_broken_bond":

@@ -62,9 +62,9 @@ static inline double softening_start(const void *constants)
 
 /** Updates a point strained beyond the peak: damage, if it grows, and stress and tangent then.
  *
- *  Where a point stands at its largest strain so far, as at the beginning of each increment at rest, stress by damage and
- *  stress of the envelope are equal but for round-off. The tangent is that of loading there: if round-off chose between
- *  loading and unloading, results at rest would depend on the units of the deck. */
+ *  Where a point stands at its largest strain so far, as at the beginning of each increment at rest, stress by damage
+ * and stress of the envelope are equal but for round-off. The tangent is that of loading there: if round-off chose
+ * between loading and unloading, results at rest would depend on the units of the deck. */
 __attribute__((always_inline)) static inline void softening_beyond(const void *constants, const Softening *c,
                                                                    SofteningEnvelope envelope,
                                                                    const breccia_batch *batch, int i)

@@ -1,5 +1,6 @@
-/* What the Green-Lagrange strain means for laws that flow: a strip of stretch l, whose law answers its strength s, exerts
- * l s per undeformed area and stands under a true stress of l^2 s, where small strain gives s. Runs and `check` say so. */
+/* What the Green-Lagrange strain means for laws that flow: a strip of stretch l, whose law answers its strength s,
+ * exerts l s per undeformed area and stands under a true stress of l^2 s, where small strain gives s. Runs and `check`
+ * say so. */
 #include "support.h"
 
 #define J2 "model: j2, density: 2, Young modulus: 1e6, Poisson ratio: 0.3, yield stress: 100"

@@ -1,5 +1,5 @@
-/* What a softening body bears at rest does not depend on how its problem is posed: in which units, as which of two mirror
- * images, in which direction, and in which order its particles stand in a file. */
+/* What a softening body bears at rest does not depend on how its problem is posed: in which units, as which of two
+ * mirror images, in which direction, and in which order its particles stand in a file. */
 #include "support.h"
 
 #include "base/random.h"
@@ -139,8 +139,8 @@ static bool are_close(const Answer *a, const Answer *b)
   return fabs(a->peak - b->peak) <= close * a->peak && fabs(a->last - b->last) <= close * a->peak;
 }
 
-/** Poses each body in the first way and in all ways at once. Bodies of bonds, whose increments jump, are posed in one of
- *  the other ways besides. */
+/** Poses each body in the first way and in all ways at once. Bodies of bonds, whose increments jump, are posed in one
+ * of the other ways besides. */
 static void what_a_body_bears_does_not_depend_on_how_it_is_posed(void **state)
 {
   (void)state;
