@@ -182,6 +182,7 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   *material = (Material){
       .name = law->name, .law = law, .law_name = law->name, .constants = memory_plain(1, law->constants_size + 1)};
   material->fracture_energy = material->length = NAN;
+  material->reduction = 1;
   if (!material->constants) {
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
@@ -198,8 +199,43 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   law->moduli(material->constants, &material->bulk, &material->shear);
   if (law->softening_energy) material->softening_energy = law->softening_energy(material->constants);
   material->history_values = law->history_values ? law->history_values(material->constants) : 0;
-  const int status = material_examine(material, reason, size);
+  int status = material_examine(material, reason, size);
+  if (!status && law->reduce_strength && !law->release) {
+    material->values = memory_plain((size_t)law->parameter_count + 1, sizeof(double));
+    if (material->values)
+      memcpy(material->values, values, sizeof(double) * (size_t)law->parameter_count);
+    else
+      status = BRECCIA_FAILURE;
+    if (status) snprintf(reason, size, "out of memory");
+  }
   if (status) material_destroy(material);
+  return status;
+}
+
+bool material_can_reduce(const Material *material)
+{
+  return material->values != NULL;
+}
+
+int material_reduce(Material *material, double factor, char *reason, size_t size)
+{
+  const breccia_law *law = material->law;
+  const size_t parameters = (size_t)law->parameter_count;
+  double *values = memory_plain(parameters + 1, sizeof *values);
+  void *constants = memory_plain(1, law->constants_size + 1);
+  int status = values && constants ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (status) snprintf(reason, size, "out of memory");
+  if (!status) {
+    memcpy(values, material->values, sizeof *values * parameters);
+    law->reduce_strength(values, factor);
+    if (law->prepare(values, constants, reason, size)) status = BRECCIA_USER_ERROR;
+  }
+  if (!status) { /* points hold on to the constants */
+    memcpy(material->constants, constants, law->constants_size);
+    material->reduction = factor;
+  }
+  free(constants);
+  free(values);
   return status;
 }
 
@@ -395,6 +431,7 @@ void material_destroy(Material *material)
 {
   if (material->constants && material->law->release) material->law->release(material->constants);
   remote_close(&material->remote);
+  free(material->values);
   free(material->constants);
   *material = (Material){0};
 }

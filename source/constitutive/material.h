@@ -31,7 +31,9 @@ typedef struct Material {
   double length;           /* over which the law spreads G_F; NaN: none */
   bool length_given;       /* by the deck, in place of that of the formulation */
   int history_values;
-  Remote *remote; /* owned; NULL: the law is in this program */
+  double *values;   /* [parameters] as given; owned; NULL unless the law can reduce its strengths */
+  double reduction; /* factor by which strengths are divided */
+  Remote *remote;   /* owned; NULL: the law is in this program */
 } Material;
 
 /** Prepares a material from its section (reader->context is the LawList).
@@ -53,6 +55,12 @@ int material_limit(Material *material, double smallest, double largest, char *re
 int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
                         const Units *units, const char *before, Error *error);
 void material_destroy(Material *material);
+
+/** Returns true if the law tells how to divide its strengths by a factor. */
+bool material_can_reduce(const Material *material);
+/** Divides the strengths as given by a factor, in place of the present one. By one thread, between updates.
+ *  @param[out] reason  why the law refuses them @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strengths as they were */
+int material_reduce(Material *material, double factor, char *reason, size_t size);
 
 /** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.
  *  @return -1, or a point of the batch that could not be integrated */

@@ -181,6 +181,7 @@ void domain_mix_tangents(Domain *d, double elastic_weight)
 void domain_tell_time(Domain *d, double time, double time_step)
 {
   domain_tell_strains(d, time);
+  domain_tell_strength(d, time);
   for (int r = 0; r < d->region_count; ++r) {
     d->regions[r].points.time = time;
     d->regions[r].points.time_step = time_step;

@@ -276,6 +276,10 @@ bool domain_bonds_may_soften(const Domain *domain);
 void domain_commit_points(Domain *domain);
 /** Lets loads say the strains that the body begins from. Points under initial stress have begun. @param[in] loading  borrowed */
 int domain_take_loads(Domain *domain, Loading *loading, const DeckReader *reader);
+/** Refuses a strength reduction that no law of the body takes, or one of them refuses. */
+int domain_check_strength(const Domain *domain, const Loading *loading, const DeckReader *reader);
+/** Divides strengths as loads say at a time, by one thread; domain_tell_time does it. */
+void domain_tell_strength(Domain *domain, double time);
 /** Strains that loads say at a time, by one thread; domain_tell_time does it. */
 void domain_tell_strains(Domain *domain, double time);
 /** Puts strains half way between those of the last state and those told, for bonds that break in a step: they have taken half of the work that strains

@@ -104,6 +104,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
   Error *error = reader->error;
   Strains *s = &d->strains;
   s->loading = loading;
+  if (domain_check_strength(d, loading, reader)) return BRECCIA_USER_ERROR;
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     s->any |= load->type->strain != NULL;

@@ -209,6 +209,8 @@ struct FormulationType {
   /** Whether linearised steps take what is damaged by the stiffness that it has left, without what its damage changes: such corrections always come
    *  on, but slowly. NULL: never. */
   bool (*takes_secants)(const void *formulation);
+  /** Reads the strengths of laws again, which have changed; by one thread. NULL: the formulation asks laws only. */
+  void (*take_strengths)(void *formulation);
   /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
   double (*history)(const void *formulation, int64_t place, int k);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.

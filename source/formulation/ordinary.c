@@ -68,6 +68,7 @@ const FormulationType formulation_ordinary = {
     .shares = ordinary_shares,
     .state = ordinary_state,
     .commit = ordinary_commit,
+    .take_strengths = ordinary_take_strengths,
     .history = ordinary_history,
     .stored_energy = ordinary_stored_energy,
     .energy_room = ordinary_energy_room,

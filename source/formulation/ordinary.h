@@ -84,9 +84,10 @@ struct Ordinary {
   float *by_length;             /* of bonds in stored slots (stretch_lengths); NULL if there are none */
   double shortest;              /* of all bonds */
   breccia_deviator *deviators;  /* [materials] */
-  Flow *flow;                   /* NULL: all families are elastic */
-  uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;                /* [slices] 1: bonds are missing (stretch_has_gaps) */
+  int material_count;
+  Flow *flow;     /* NULL: all families are elastic */
+  uint8_t *range; /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;  /* [slices] 1: bonds are missing (stretch_has_gaps) */
   const OrdinarySweeps *sweeps;
 };
 
@@ -193,6 +194,8 @@ Relaxed ordinary_relaxed(double times);
 /** Reads the laws' deviators; makes room for what they remember. */
 int ordinary_flow_create(Ordinary *o, int materials, Error *error);
 void ordinary_flow_destroy(Ordinary *o);
+/** Reads their yield stresses again, which a strength reduction has changed. */
+void ordinary_take_strengths(void *formulation);
 /** Whether a deviator does more than resist. */
 bool ordinary_flows(const breccia_deviator *deviator);
 /** Asks them: trial shifts of slices whose dilatations are known. */

@@ -69,6 +69,7 @@ int ordinary_flow_create(Ordinary *o, int materials, Error *error)
   bool any = false;
   o->deviators = memory_zeroed((size_t)materials, sizeof *o->deviators, "force states", error);
   if (!o->deviators) return BRECCIA_FAILURE;
+  o->material_count = materials;
   for (int k = 0; k < materials; ++k) {
     const Material *m = &o->materials[k];
     o->deviators[k] = (breccia_deviator){.yield_stress = INFINITY};
@@ -78,6 +79,17 @@ int ordinary_flow_create(Ordinary *o, int materials, Error *error)
   }
   for (int64_t slice = 0; slice < o->particles->slices; ++slice) any |= ordinary_flows(deviator_at(o, slice));
   return any ? create_flow(o, error) : BRECCIA_OK;
+}
+
+void ordinary_take_strengths(void *formulation)
+{
+  const Ordinary *o = formulation;
+  for (int k = 0; k < o->material_count; ++k) {
+    const Material *m = &o->materials[k];
+    char reason[200];
+    if (isfinite(o->deviators[k].yield_stress) && material_can_reduce(m))
+      m->law->deviator(m->constants, &o->deviators[k], reason, sizeof reason);
+  }
 }
 
 void ordinary_flow_destroy(Ordinary *o)

@@ -244,6 +244,9 @@ double loading_grown_factor(const Loading *loading, const Load *load, double tim
 void loading_grown_strains(const Loading *loading, const LoadStrains *strains, double time);
 /** Puts what strains have changed by since the stage under way began, at that time of the run; NaN: all of them. loading_strain does not know of it. */
 void loading_changed_strains(const Loading *loading, const LoadStrains *strains, double begin, double time);
+extern const LoadType gravity_load, strength_reduction_load;
+/** Factor by which loads divide strengths at a time of the run; 1: none does. */
+double loading_strength_reduction(const Loading *loading, double time);
 /** Whether a load of a deck is an initial strain of particles. */
 bool load_strains_places(const LoadSpec *load);
 extern const LoadType initial_strain_load;

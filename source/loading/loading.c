@@ -429,3 +429,14 @@ void loading_mark_held(const Loading *loading, uint8_t *held)
     for (int64_t n = 0; n < selection->count; ++n) held[selection->places[n]] = 1;
   }
 }
+
+double loading_strength_reduction(const Loading *loading, double time)
+{
+  double factor = 1;
+  for (int k = 0; k < loading->count; ++k) {
+    const Load *load = &loading->loads[k];
+    if (load->type != &strength_reduction_load || !load_acts(loading, load)) continue;
+    factor *= 1 + (load->value->number - 1) * load_factor(load, time);
+  }
+  return factor;
+}

@@ -3,6 +3,7 @@
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
 #include "formulation/correspondence.h"
+#include "model/ground_step.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -603,6 +604,19 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_damping(model);
 }
 
+/** Adds how far a factor of safety comes out too high, where strengths are divided. */
+static void describe_step(const breccia_model *model, Text *text)
+{
+  bool any = false;
+  for (int k = 0; k < model->loading.count; ++k) any |= model->loading.loads[k].type == &strength_reduction_load;
+  const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
+  if (step > 0)
+    text_add(text,
+             "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "
+             "out up to %.0f %% too high; halve the spacing to halve that\n",
+             step, 100 * ground_step_excess(step));
+}
+
 void plausibility_describe(breccia_model *model, bool search, Text *text)
 {
   const Extent e = extent_of(model);
@@ -619,6 +633,7 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
     plausibility_describe_middle(model, &model->loading.loads[k], text);
     plausibility_describe_platen(model, &model->loading.loads[k], text);
   }
+  describe_step(model, text);
   const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
   text_add(text, "  the run: ");
   if (rests && time == 0) {

@@ -67,6 +67,17 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   return 1;
 }
 
+/** The tip of the cone stays where it is, and dilation until friction is less. */
+static void reduce_strength(double *v, double factor)
+{
+  static const int strengths[] = {COHESION, CONE_STRENGTH, CONE_SLOPE, CUT, HARDENING, GAIN};
+  const double degree = acos(-1) / 180;
+  for (size_t k = 0; k < sizeof strengths / sizeof *strengths; ++k) v[strengths[k]] /= factor;
+  v[FRICTION] = atan(tan(v[FRICTION] * degree) / factor) / degree;
+  v[DILATION_ANGLE] = isnan(v[DILATION_ANGLE]) ? NAN : fmin(v[DILATION_ANGLE], v[FRICTION]);
+  v[DILATION_SLOPE] = isnan(v[DILATION_SLOPE]) ? NAN : fmin(v[DILATION_SLOPE], v[CONE_SLOPE]);
+}
+
 static int history_values(const void *constants)
 {
   (void)constants;
@@ -103,4 +114,5 @@ const breccia_law law_drucker_prager = {
     .history_values = history_values,
     .history_name = history_name,
     .update = update,
+    .reduce_strength = reduce_strength,
 };

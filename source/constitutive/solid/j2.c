@@ -26,6 +26,12 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   return 1;
 }
 
+static void reduce_strength(double *v, double factor)
+{
+  static const int strengths[] = {YIELD, SATURATION, HARDENING};
+  for (size_t k = 0; k < sizeof strengths / sizeof *strengths; ++k) v[strengths[k]] /= factor;
+}
+
 static int history_values(const void *constants)
 {
   return ((const J2 *)constants)->kinematic > 0 ? J2_HISTORY : J2_BACK;
@@ -72,4 +78,5 @@ const breccia_law law_j2 = {
     .history_name = history_name,
     .update = update,
     .deviator = deviator_of,
+    .reduce_strength = reduce_strength,
 };

@@ -95,6 +95,16 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   return 1;
 }
 
+/** The tip of the pyramid stays where it is, and the dilation angle until friction is less. */
+static void reduce_strength(double *v, double factor)
+{
+  const double degree = acos(-1) / 180;
+  v[COHESION] /= factor;
+  v[FRICTION] = atan(tan(v[FRICTION] * degree) / factor) / degree;
+  v[DILATION] = isnan(v[DILATION]) ? NAN : fmin(v[DILATION], v[FRICTION]);
+  v[TENSILE] /= factor;
+}
+
 static int history_values(const void *constants)
 {
   (void)constants;
@@ -124,4 +134,5 @@ const breccia_law law_mohr_coulomb = {
     .moduli = elasticity_moduli,
     .history_values = history_values,
     .update = update,
+    .reduce_strength = reduce_strength,
 };

@@ -20,6 +20,14 @@ static const breccia_parameter parameters[] = {
     {"pressure exponent", "1", "0", "[0, 2]", "growth of the moduli with pressure (with friction)"},
 };
 
+static void reduce_strength(double *v, double factor)
+{
+  const double degree = acos(-1) / 180;
+  v[P_OCTAHEDRAL] /= factor;
+  v[P_COHESION] /= factor;
+  v[P_FRICTION] = atan(tan(v[P_FRICTION] * degree) / factor) / degree;
+}
+
 static int prepare(const double *v, void *constants, char *reason, size_t reason_size)
 {
   MultiYield *c = constants;
@@ -123,4 +131,5 @@ const breccia_law law_multi_yield_j2 = {
     .history_name = history_name,
     .begin = begin,
     .update = multi_yield_update,
+    .reduce_strength = reduce_strength,
 };

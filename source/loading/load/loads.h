@@ -26,6 +26,12 @@ LOAD(initial_strain, "initial strain", FIELD_NUMBER, "1",
      "above; "
      "laws are given the strain less this one")
 LOAD_SECTION(prestress, "prestress", "tension of bars by which they are shorter than their places in the body")
+LOAD(strength_reduction, "strength reduction", FIELD_NUMBER, "1",
+     "number F by which the strengths of all materials are divided whose laws tell how (mohr-coulomb, drucker-prager, "
+     "j2 "
+     "and "
+     "multi-yield-j2), for factors of safety: cohesions, yield stresses and tangents of angles of friction. With a "
+     "'history' h it is 1 + (F - 1) h")
 LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displacement")
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
 LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",

@@ -1,0 +1,64 @@
+/* The step in the surface of ground: the height of a slope, a cut or a pit, in spacings. How far the factor of safety of a step comes out too high follows from
+ * that number alone, as a slip line ends in families that the surface cuts off (docs/choosing.md). */
+#include "model/ground_step.h"
+
+#include "base/memory.h"
+#include "loading/load.h"
+#include <math.h>
+#include <stdlib.h>
+
+/** The axis along which gravity acts most, or -1. */
+static int axis_of_gravity(const Loading *loading)
+{
+  for (int k = 0; k < loading->count; ++k) {
+    const LoadSpec *spec = loading->loads[k].spec;
+    if (loading->loads[k].type != &gravity_load) continue;
+    int axis = 0;
+    for (int r = 1; r < 3; ++r)
+      if (fabs(spec->of[LOAD_gravity].point[r]) > fabs(spec->of[LOAD_gravity].point[axis])) axis = r;
+    return axis;
+  }
+  return -1;
+}
+
+double ground_step_spacings(const Body *body, const Loading *loading)
+{
+  const int up = axis_of_gravity(loading);
+  const Particles *p = &body->particles;
+  const double spacing = body->largest_spacing;
+  if (up < 0 || up >= body->dimensions || !(spacing > 0)) return 0;
+  int64_t columns = 1, counts[3] = {1, 1, 1};
+  for (int k = 0; k < body->dimensions; ++k) {
+    if (k == up) continue;
+    counts[k] = (int64_t)floor((body->high[k] - body->low[k]) / spacing + 1e-6) + 1;
+    columns *= counts[k];
+  }
+  double *top = memory_plain((size_t)columns, sizeof *top), lowest = INFINITY, highest = -INFINITY;
+  for (int64_t c = 0; top && c < columns; ++c) top[c] = -INFINITY;
+  for (int64_t n = 0; top && n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    int64_t column = 0;
+    bool inside = !body_outside(body, n);
+    for (int k = 0; k < body->dimensions; ++k) {
+      if (k == up) continue;
+      const int64_t at = (int64_t)floor((p->position[k][i] - body->low[k]) / spacing + 0.5);
+      inside &= at >= 0 && at < counts[k];
+      column = column * counts[k] + at;
+    }
+    if (inside) top[column] = fmax(top[column], p->position[up][i]);
+  }
+  for (int64_t c = 0; top && c < columns; ++c) {
+    if (isinf(top[c])) continue;
+    lowest = fmin(lowest, top[c]);
+    highest = fmax(highest, top[c]);
+  }
+  free(top);
+  return highest > lowest ? (highest - lowest) / spacing : 0;
+}
+
+double ground_step_excess(double spacings)
+{
+  const double lost =
+      2.4; /* spacings of the height, with a horizon of 2.015 spacings: cuts and slopes of docs/choosing.md lose up to so many */
+  return spacings > 2 * lost ? lost / (spacings - lost) : 1;
+}

@@ -1,0 +1,14 @@
+/* The height of a step in the surface of ground, as of a slope or a cut, in spacings. */
+#ifndef BRECCIA_MODEL_GROUND_STEP_H
+#define BRECCIA_MODEL_GROUND_STEP_H
+
+#include "body/body.h"
+#include "loading/load.h"
+
+/** Returns by how many spacings the highest column of particles along gravity ends above the lowest one; 0: gravity does not act, or memory is out. */
+double ground_step_spacings(const Body *body, const Loading *loading);
+
+/** Returns by what share the factor of safety of such a step comes out too high at most; at most 1. */
+double ground_step_excess(double spacings);
+
+#endif

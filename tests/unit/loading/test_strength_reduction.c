@@ -1,0 +1,161 @@
+/* Strengths that loads divide: laws against the same laws with divided parameters, and slopes without end against their closed form. */
+#include "support.h"
+
+#include "loading/load.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+
+typedef struct Law {
+  const char *given, *divided; /* by 1.6: c = 8 -> 5, tan(phi) = 0.8 -> 0.5 */
+
+} Law;
+
+/* Angles of friction are atan(0.8) and atan(0.5); the first dilation angle lies between these. */
+#define COULOMB "model: mohr-coulomb, density: 2, Young modulus: 1e4, Poisson ratio: 0.3, "
+#define CONE "model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.3, "
+#define J2 "model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.3, "
+#define NESTED "model: multi-yield-j2, density: 2, shear modulus: 4e3, bulk modulus: 8e3, "
+static const Law laws[] = {
+    {COULOMB "cohesion: 8, friction angle: \"${atan(0.8)}\", dilation angle: 0",
+     COULOMB "cohesion: 5, friction angle: \"${atan(0.5)}\", dilation angle: 0"},
+    {COULOMB "cohesion: 8, friction angle: \"${atan(0.8)}\", dilation angle: \"${atan(0.7)}\", tensile strength: 3.2",
+     COULOMB "cohesion: 5, friction angle: \"${atan(0.5)}\", dilation angle: \"${atan(0.5)}\", tensile strength: 2"},
+    {COULOMB "cohesion: 8, friction angle: \"${atan(0.8)}\"", COULOMB "cohesion: 5, friction angle: \"${atan(0.5)}\""},
+    {CONE "cohesion: 8, friction angle: \"${atan(0.8)}\", dilation angle: 0",
+     CONE "cohesion: 5, friction angle: \"${atan(0.5)}\", dilation angle: 0"},
+    {CONE "cone strength: 8, cone slope: 0.16, dilation slope: 0.12, tension cut-off: 16, hardening modulus: 160",
+     CONE "cone strength: 5, cone slope: 0.1, dilation slope: 0.1, tension cut-off: 10, hardening modulus: 100"},
+    {J2 "yield stress: 16, saturation stress: 24, saturation rate: 100, hardening modulus: 160",
+     J2 "yield stress: 10, saturation stress: 15, saturation rate: 100, hardening modulus: 100"},
+    {NESTED "cohesion: 16", NESTED "cohesion: 10"},
+    {NESTED "octahedral strength: 16", NESTED "octahedral strength: 10"},
+};
+enum { LAWS = sizeof laws / sizeof *laws };
+
+/** Ground that is pushed down by a footing, all motions prescribed at its top. */
+static breccia_model *ground_of(const char *law, const char *loads)
+{
+  breccia_model *m = model_of(
+      UNITS "materials: {m: {%s}}\n"
+            "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [8, 6]}}}}\n"
+            "peridynamics: {formulation: correspondence, space: plane strain, horizon: 2.015 spacings}\n"
+            "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, {on: {face: y+, layers: 2}, displacement: "
+            "[4e-3, -2e-3], history: {ramp to: 1}}%s]\n"
+            "solve: {static: {increments: 3, method: relaxation, residual: 1e-6, relaxation iterations: 20000}}\n"
+            "pictures: []\n",
+      law, loads);
+  m->threads = 1;
+  return m;
+}
+
+/** Strengths that are divided from the beginning on are those of a deck that gives them so. */
+static void divided_strengths_are_those_of_divided_parameters(void **state)
+{
+  (void)state;
+  for (int k = 0; k < LAWS; ++k) {
+    breccia_model *m[2] = {ground_of(laws[k].given, ", {strength reduction: 1.6}"), ground_of(laws[k].divided, "")};
+    double apart = 0, largest = 0;
+    for (int s = 0; s < 2; ++s)
+      while (!solver_is_done(&m[s]->solver)) step_surely(m[s], 1);
+    const Particles *p = m[0]->domain.particles;
+    for (int c = 0; c < 6; ++c)
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        apart = larger_of(apart, fabs(m[0]->domain.stress[c][i] - m[1]->domain.stress[c][i]));
+        largest = larger_of(largest, fabs(m[1]->domain.stress[c][i]));
+      }
+    if (!(apart <= 1e-8 * largest) || !(largest > 1))
+      fail_msg("law %d: stresses are %g of %g apart", k, apart, largest);
+    assert_near(m[0]->domain.materials[0].reduction, 1.6, 0);
+    for (int s = 0; s < 2; ++s) breccia_model_destroy(&m[s]);
+  }
+}
+
+/** Ground on a slope without end, of height 10 m along its normal, whose gravity leans by atan(0.5); periodic along the slope. */
+static breccia_model *slope_of(const char *formulation, const char *law, int layers)
+{
+  breccia_model *m = model_of(
+      UNITS
+      "variables: {g: 10, lean: \"${atan(0.5)}\"}\n"
+      "materials: {m: {%s}}\n"
+      "body: {b: {material: m, lattice: square, spacing: %.17g, thickness: 1, shape: {box: {from: [0, 0], to: [%.17g, "
+      "10]}}}}\n"
+      "peridynamics: {%s, space: plane strain, horizon: 2.015 spacings}\n"
+      "loads: [{gravity: [\"${g*sin(lean)}\", \"${-g*cos(lean)}\"]}, {on: {face: y-}, support: {held: all}}, "
+      "{on: {face: x+}, support: {held: periodic}}]\n"
+      "solve: [{name: at rest, laws: elastic, static: {increments: 1}}, {name: weaken, displacements: zero, "
+      "loads: [{strength reduction: 2, history: {ramp to: 1}}], static: {increments: 20, smallest increment: 0.05}}]\n"
+      "pictures: []\n",
+      law, 10.0 / layers, 40.0 / layers, formulation);
+  m->threads = 1;
+  return m;
+}
+
+/** The largest factor with an equilibrium: c / (gamma H sin(b)) + tan(phi) / tan(b), as shear and pressure at the base are gamma H times sin(b) and cos(b). The
+ *  lowest particle stands half a spacing above the base, where both are less by its share of the height. */
+static void slopes_without_end_slide_at_their_closed_form(void **state)
+{
+  (void)state;
+  const double gamma = 20, height = 10, sine = sin(atan(0.5));
+  static const struct {
+    const char *formulation, *law;
+    double cohesion, friction; /* c, tan(phi) */
+  } slopes[] = {
+      {"formulation: ordinary", J2 "yield stress: \"${sqrt(3)*130}\"", 130, 0},
+      {"formulation: ordinary", J2 "yield stress: \"${sqrt(3)*110}\"", 110, 0},
+  };
+  for (size_t k = 0; k < sizeof slopes / sizeof *slopes; ++k) {
+    const int layers = 10;
+    breccia_model *m = slope_of(slopes[k].formulation, slopes[k].law, layers);
+    Error *error = breccia_error_create();
+    int status = 0;
+    while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
+    const double factor = loading_strength_reduction(&m->loading, m->solver.clock.time),
+                 right = slopes[k].cohesion / (gamma * height * sine) + slopes[k].friction / 0.5;
+    if (!status || !strstr(breccia_error_text(error), "no equilibrium"))
+      fail_msg("slope %zu: finds equilibrium at all factors, or fails otherwise: %s", k, breccia_error_text(error));
+    if (!(factor > 0.97 * right && factor < 1.07 * right)) fail_msg("slope %zu: %g in place of %g", k, factor, right);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void wrong_reductions_are_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *law, *load, *words;
+  } wrong[] = {
+      {J2 "yield stress: 3", "{strength reduction: 0}", "expected a number above 0 by which strengths are divided"},
+      {J2 "yield stress: 3", "{on: {face: x-}, strength reduction: 2}",
+       "acts on all materials whose laws tell how; leave it out"},
+      {"model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3", "{strength reduction: 2}",
+       "no material has a law that tells how|mohr-coulomb"},
+      {NESTED "octahedral strength: 300, peak octahedral strain: 0.1", "{strength reduction: 0.5}",
+       "material 'm'|must lie below shear modulus times peak strain"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    char deck[1024];
+    snprintf(
+        deck, sizeof deck,
+        UNITS
+        "materials: {m: {%s}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 6]}}}}\n"
+        "peridynamics: {formulation: correspondence, space: plane strain}\n"
+        "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, %s]\nsolve: {static: {increments: 1}}\n",
+        wrong[k].law, wrong[k].load);
+    char *words = refusal_of(deck);
+    holds_words(words, wrong[k].words);
+    free(words);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(divided_strengths_are_those_of_divided_parameters),
+      cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
+      cmocka_unit_test(wrong_reductions_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
