@@ -1,53 +1,37 @@
-/* The load under which a body fails: cases of a deck with ever closer loads, of which the lower one comes to rest and the higher one does not. */
-#include "cases.h"
-#include "verbs.h"
+/* The load under which a body fails: cases of a deck with ever closer loads, of which the lower one comes to rest and the higher one does not. Loads may be
+ * factors that divide strengths, and each may be run with several seeds. */
+#include "failure.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOAD, WITHIN, REST, SET, OUTPUT, JOBS, THREADS, AGAIN, QUIET, COUNT };
+enum { MOST_SAMPLES = 100 };
+enum { LOAD, WITHIN, REST, RATE, SEED, SAMPLES, SET, OUTPUT, JOBS, THREADS, AGAIN, QUIET, COUNT };
 
 static const Option options[] = {
     {"load", "KEY=FROM:TO",
      "the key of the deck that is the load, or its factor: variables.load=300 N:400 N; the body must bear FROM and "
-     "fail under TO. It is a force: a prescribed motion is at rest when the body is in two, too"},
+     "fail under TO. It is a force, or a 'strength reduction': a prescribed motion is at rest when the body is in two, "
+     "too"},
     {"within", "SHARE", "how close the two loads have to come: 0.01 of the higher one"},
     {"rest", "SHARE",
      "a body bears a load if forces out of balance are below this share of those that act in the end, and kinetic "
      "energy of the work: 0.05, or what the deck says under 'quasi-static'"},
+    {"rate", "NUMBER",
+     "a body gives way where displacement grows by more than this many times what it grew with the load at first (30)"},
+    {"seed", "KEY=A, B, ...",
+     "each load is run with each of these values, and counts as borne if more than half of them bear it"},
+    {"samples", "N", "so many more loads, evenly spaced from FROM to TO, for a share of failures (0)"},
     SET_OPTION,
     {"output", "DIR", "folder of the cases and the table (beside the deck, DECK-failure)"},
-    {"jobs", "N", "cases at a time, 1 or 2 (2)"},
+    {"jobs", "N", "cases at a time (2)"},
     {"threads", "N", "threads of each case (all cores, shared among the jobs)"},
     {"again", NULL, "run cases again that are done"},
     {"quiet", NULL, "print the table and errors only"},
     {0},
 };
-
-typedef enum Verdict { BEARS, FAILS, UNKNOWN } Verdict;
-
-typedef struct Trial {
-  double load, unbalanced, kinetic; /* NaN where the run stopped */
-  Verdict verdict;
-  bool done;    /* it came to its end; otherwise why not has been said */
-  bool settles; /* it counts as failing, but still came to rest at the end */
-  char name[96];
-} Trial;
-
-enum { MOST_TRIALS = 128 };
-
-typedef struct Search {
-  const char *deck, *folder;
-  char key[160], unit[64];
-  double within, rest;
-  long long jobs, threads;
-  bool again, quiet, rest_given;
-  const DeckSettings *settings;
-  Trial trials[MOST_TRIALS];
-  int count;
-} Search;
 
 /** Reads a positive number. @return 0, or 1 after saying what is wrong */
 static int read_share(const char *words, const char *option, double standard, double *value)
@@ -56,6 +40,17 @@ static int read_share(const char *words, const char *option, double standard, do
   *value = words ? strtod(words, &end) : standard;
   if (!words || (end != words && !*end && *value > 0 && *value < 1)) return 0;
   complain("breccia failure: --%s takes a number between 0 and 1, and not '%s'", option, words);
+  return 1;
+}
+
+/** Reads how many times faster displacement may grow. @return 0, or 1 after saying what is wrong */
+static int read_rate(const char *words, double *value)
+{
+  const double standard = 30; /* concrete that cracks and steel that yields give way by 5 to 20 times */
+  char *end = NULL;
+  *value = words ? strtod(words, &end) : standard;
+  if (!words || (end != words && !*end && *value > 1 && isfinite(*value))) return 0;
+  complain("breccia failure: --rate takes a number above 1, and not '%s'", words);
   return 1;
 }
 
@@ -92,110 +87,84 @@ static int read_load(Search *s, const char *words, double *from, double *to)
   return BRECCIA_USER_ERROR;
 }
 
-/** What came of case k of a study. */
-static Trial judge(Search *s, const breccia_study *study, int k, double load)
+/** Says why there is no verdict on a run. @return status */
+static int refuse_verdict(const Search *s, const Trial *t, const CaseWork *work)
 {
-  breccia_case one = {.size = sizeof one};
-  Trial t = {.load = load, .verdict = UNKNOWN, .unbalanced = NAN, .kinetic = NAN};
-  breccia_study_case_at(study, k, &one);
-  snprintf(t.name, sizeof t.name, "%s", one.name);
-  if (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k)) t.verdict = FAILS;
-  t.done = one.state == BRECCIA_CASE_DONE;
-  if (!t.done) return t;
-  double limit, told = 1;
-  breccia_study_figure(study, k, "rest.told", &told); /* of quasi-static stages only */
-  if (told == 0) return t;
-  if (!s->rest_given && breccia_study_figure(study, k, "rest.limit", &limit)) s->rest = limit;
-  if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
-      breccia_study_figure(study, k, "rest.kinetic", &t.kinetic))
-    t.verdict = t.unbalanced <= s->rest && t.kinetic <= s->rest ? BEARS : FAILS;
-  double settles = 0;
-  breccia_study_figure(study, k, "rest.settles", &settles);
-  t.settles = settles != 0 && t.verdict == FAILS;
-  return t;
+  if (t->done)
+    complain("breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
+             "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more",
+             t->name);
+  else
+    complain("breccia failure: %s/%s/log.txt tells more", s->folder, t->name);
+  return t->done || work->refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
 }
 
-/** Runs one or two loads side by side and notes what came of them. @return status */
+/** Returns the loads as a key with its values, to be varied; NULL after a message that memory is out. */
+static char *list_loads(const Search *s, const double *loads, int count)
+{
+  char *list = words_of("%s=", s->key);
+  for (int k = 0; k < count && list; ++k) {
+    char *longer = words_of("%s%s%.12g%s", list, k ? ", " : "", loads[k], s->unit);
+    free(list);
+    list = longer;
+  }
+  return list;
+}
+
+/** Runs some loads side by side and notes what came of them. @return status */
 static int try_loads(Search *s, const double *loads, int count, breccia_error *error)
 {
-  char *one = words_of("%.12g%s", loads[0], s->unit),
-       *two = count > 1 ? words_of(", %.12g%s", loads[1], s->unit) : NULL,
-       *varied = one ? words_of("%s=%s%s", s->key, one, two ? two : "") : NULL;
+  char *list = list_loads(s, loads, count);
+  const char *const varied[] = {list, s->seed};
   const breccia_study_plan plan = {.size = sizeof plan,
                                    .deck = s->deck,
                                    .folder = s->folder,
-                                   .varied = (const char *const *)&varied,
-                                   .varied_count = 1,
+                                   .varied = varied,
+                                   .varied_count = s->seed ? 2 : 1,
                                    .settings = s->settings->items,
                                    .setting_count = s->settings->count};
   CaseWork work = {.deck = s->deck, .may_fail = true, .again = s->again, .quiet = s->quiet};
-  int status = varied ? breccia_study_create(&plan, &work.study, error) : BRECCIA_FAILURE;
+  int status = list ? breccia_study_create(&plan, &work.study, error) : BRECCIA_FAILURE;
   if (!status) status = cases_run(&work, s->jobs, s->threads);
-  for (int k = 0; k < count && !status; ++k) {
-    const Trial t = s->trials[s->count++] = judge(s, work.study, k, loads[k]);
-    if (t.verdict != UNKNOWN || cases_interrupted()) continue;
-    if (t.done)
-      complain("breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
-               "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more",
-               t.name);
-    else
-      complain("breccia failure: %s/%s/log.txt tells more", s->folder, t.name);
-    status = t.done || work.refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
+  s->seeds = status ? 1 : work.count / count;
+  for (int k = 0; k < work.count && !status && s->count < MOST_TRIALS; ++k) { /* the last key changes fastest */
+    const Trial t = s->trials[s->count++] = failure_judge(s, work.study, k, loads[k / s->seeds]);
+    if (t.verdict == UNKNOWN && !cases_interrupted()) status = refuse_verdict(s, &t, &work);
   }
   breccia_study_destroy(&work.study);
-  free(varied);
-  free(two);
-  free(one);
+  free(list);
+  failure_compare(s);
   return cases_interrupted() ? 130 : status;
 }
 
-/** The largest load that the body bears below all under which it fails, and the least of these. */
-static void find_bracket(const Search *s, double *bears, double *fails)
+/** Says which of the two loads to begin with is no end of an interval. @return status */
+static int check_ends(const Search *s, double from, double to, double fails)
 {
-  *bears = 0;
-  *fails = INFINITY;
-  for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].verdict == FAILS) *fails = fmin(*fails, fabs(s->trials[k].load));
-  for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].verdict == BEARS && fabs(s->trials[k].load) < *fails)
-      *bears = fmax(*bears, fabs(s->trials[k].load));
-}
-
-static int by_load(const void *a, const void *b)
-{
-  const double x = fabs(((const Trial *)a)->load), y = fabs(((const Trial *)b)->load);
-  return (x > y) - (x < y);
-}
-
-/** The table, as text or for a spreadsheet. */
-static void print_trials(const Search *s, FILE *out, bool commas)
-{
-  static const char *const words[] = {[BEARS] = "bears it", [FAILS] = "fails", [UNKNOWN] = "-"};
-  fprintf(out, commas ? "load,outcome,forces out of balance,kinetic energy,case\n" : "%16s  %-9s %22s %16s  %s\n",
-          "load", "outcome", "forces out of balance", "kinetic energy", "case");
-  for (int k = 0; k < s->count; ++k) {
-    const Trial *t = &s->trials[k];
-    const bool stopped = isnan(t->unbalanced);
-    char load[96], shares[2][32] = {"", ""};
-    snprintf(load, sizeof load, "%.9g%s", t->load, s->unit);
-    if (!stopped) snprintf(shares[0], sizeof shares[0], "%.3g", t->unbalanced);
-    if (!stopped) snprintf(shares[1], sizeof shares[1], "%.3g", t->kinetic);
-    const char *outcome = t->verdict == FAILS && stopped ? "stopped" : words[t->verdict];
-    fprintf(out, commas ? "%s,%s,%s,%s,%s\n" : "%16s  %-9s %22s %16s  %s\n", load, outcome, shares[0], shares[1],
-            t->name);
+  if (failure_share(s, from) >= 0.5) {
+    const Trial *first = &s->trials[0];
+    if (first->verdict == DOUBTFUL)
+      complain("breccia failure: there is no verdict on the body under %.9g%s: %s", from, s->unit,
+               failure_reason(first->reason));
+    else
+      complain("breccia failure: the body fails already under %.9g%s; give a smaller FROM", from, s->unit);
+    return BRECCIA_USER_ERROR;
   }
+  if (fails <= fabs(to)) return BRECCIA_OK;
+  complain("breccia failure: the body does not fail under %.9g%s; give a larger TO", to, s->unit);
+  return BRECCIA_USER_ERROR;
 }
 
-static int write_table(const Search *s)
+/** Runs evenly spaced loads between the ends, for a share of failures. @return status */
+static int try_samples(Search *s, double from, double to, breccia_error *error)
 {
-  char *path = words_of("%s/failure.csv", s->folder);
-  FILE *file = path ? cases_open_file(path, false) : NULL;
-  if (file) print_trials(s, file, true);
-  const bool bad = !file || ferror(file);
-  const int closed = file ? fclose(file) : 0;
-  if (path && (bad || closed)) complain("%s: cannot be written", path);
-  free(path);
-  return bad || closed ? BRECCIA_FAILURE : BRECCIA_OK;
+  int status = BRECCIA_OK;
+  for (long long k = 1; k <= s->samples && !status; ++k) {
+    const double load = from + (to - from) * ((double)k / (double)(s->samples + 1));
+    bool known = false;
+    for (int n = 0; n < s->count; ++n) known |= s->trials[n].load == load;
+    if (!known) status = try_loads(s, &load, 1, error);
+  }
+  return status;
 }
 
 static int search(Search *s, double from, double to, breccia_error *error)
@@ -203,46 +172,22 @@ static int search(Search *s, double from, double to, breccia_error *error)
   double bears = 0, fails = INFINITY;
   const double sign = to < 0 ? -1 : 1;
   int status = try_loads(s, (const double[]){from, to}, 2, error);
-  if (!status) find_bracket(s, &bears, &fails);
-  if (!status && (s->trials[0].verdict != BEARS || s->trials[1].verdict != FAILS)) {
-    const bool high = s->trials[0].verdict == BEARS;
-    complain("breccia failure: the body %s under %.9g%s; give a %s", high ? "does not fail" : "fails already",
-             high ? to : from, s->unit, high ? "larger TO" : "smaller FROM");
-    status = BRECCIA_USER_ERROR;
-  }
-  while (!status && fails - bears > s->within * fails && s->count + 2 <= MOST_TRIALS) {
+  failure_bracket(s, &bears, &fails);
+  if (!status) status = check_ends(s, from, to, fails);
+  while (!status && fails - bears > s->within * fails && s->count + 2 * s->seeds <= MOST_TRIALS) {
     const double gap = sign * (fails - bears), low = sign * bears;
     const double thirds[] = {low + gap / 3, low + 2 * gap / 3}, middle = low + gap / 2;
     status = s->jobs > 1 ? try_loads(s, thirds, 2, error) : try_loads(s, &middle, 1, error);
-    find_bracket(s, &bears, &fails);
+    failure_bracket(s, &bears, &fails);
   }
-  qsort(s->trials, (size_t)s->count, sizeof *s->trials, by_load);
+  if (!status) status = try_samples(s, from, to, error);
   if (s->count) {
     printf("\n");
-    print_trials(s, stdout, false);
+    failure_print(s);
   }
-  if (s->count && write_table(s) && !status) status = BRECCIA_FAILURE;
   if (status == 130) printf("'breccia failure' with the same arguments goes on from here\n");
-  if (status) return status;
-  for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].verdict == BEARS && fabs(s->trials[k].load) > fails)
-      printf("it also bears %.9g%s, above a load under which it fails\n", s->trials[k].load, s->unit);
-  printf(
-      "\nfails between %.9g%s and %.9g%s (%s): a body bears a load if forces out of balance are below %g of those that "
-      "act in the end, and kinetic energy below %g of the work\n",
-      sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
-  for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].verdict == FAILS && isnan(s->trials[k].unbalanced)) {
-      printf(
-          "stopped: the run ended before its time, as where it finds no equilibrium any more (log.txt of the case)\n");
-      break;
-    }
-  for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].settles)
-      printf("under %.9g%s it still came to rest when the run ended: a longer 'hold' of 'quasi-static' may find that "
-             "it bears this load\n",
-             s->trials[k].load, s->unit);
-  if (!s->quiet) printf("\nwritten:\n  %s/failure.csv\n", s->folder);
+  if (!status) failure_tell(s, sign);
+  if (s->count && failure_write(s) && !status) status = BRECCIA_FAILURE;
   return status;
 }
 
@@ -256,11 +201,12 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
     return BRECCIA_USER_ERROR;
   }
   if (read_load(&s, values[LOAD], &from, &to) || read_share(values[WITHIN], "within", 0.01, &s.within) ||
-      read_share(values[REST], "rest", 0.05, &s.rest))
+      read_share(values[REST], "rest", 0.05, &s.rest) || read_rate(values[RATE], &s.rate))
     return BRECCIA_USER_ERROR;
   s.rest_given = values[REST] != NULL;
+  s.seed = values[SEED];
+  if (values[SAMPLES] && read_whole(values[SAMPLES], "samples", 0, MOST_SAMPLES, &s.samples)) return BRECCIA_USER_ERROR;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, LLONG_MAX, &s.jobs)) return BRECCIA_USER_ERROR;
-  if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, INT_MAX, &s.threads)) return BRECCIA_USER_ERROR;
   char *folder = output_folder(values[OUTPUT], deck, "-failure");
   breccia_error *error = breccia_error_create();
@@ -284,8 +230,18 @@ const Verb verb_failure = {
     .options = options,
     .more = "Each run has a folder of its own, as in a study: those that are done are not run again. A body fails "
             "under a load if its run\n"
-            "ends before its time (no equilibrium), or if at its end the body has not come to rest: loads must have "
-            "become steady\n"
-            "by then, and explicit stages need damping. The two runs of each round are a third of what is left apart.\n"
+            "ends before its time (no equilibrium), if at its end the body has not come to rest, or if it gives way: "
+            "displacement grows\n"
+            "too fast from load to load. Loads must have become steady by then, and explicit stages need damping. "
+            "There is no verdict on\n"
+            "rest that says nothing of a real body: control of zero-energy modes carries load where laws have yielded, "
+            "particles are\n"
+            "turned inside out, or the body has moved by more than its size. The table has for every run the largest "
+            "displacement, its\n"
+            "rate over that of the lowest load, the share of the energy that is spent (plastic), the share that "
+            "control has of the energy\n"
+            "where laws have yielded, forces out of balance, kinetic energy, and the time for which loads were held. "
+            "The two runs of each\n"
+            "round are a third of what is left apart.\n"
             "Exit status: 0 found, 1 a run or the machine failed, 2 the deck or the arguments are wrong, 130 stopped.",
     .run = run};

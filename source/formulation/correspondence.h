@@ -146,8 +146,13 @@ size_t correspondence_fading_bytes(const Correspondence *c);
 bool correspondence_control_lasts(const void *formulation, const Material *material);
 /** Energy that the control stores at a place. */
 double correspondence_held(const void *formulation, int64_t place);
-/** Energy that such a control stores at a place whose point has less than 0.7 of its stiffness left, as a secant; else 0. */
-double correspondence_held_by_yielded(const void *formulation, int64_t place);
+/** Energies [energy] of a place whose point has less than 0.7 of its stiffness left, as a secant; else zeros. */
+typedef struct YieldedEnergy {
+  double stored;  /* by law and control */
+  double held;    /* of that, by the control of zero-energy modes */
+  double lasting; /* of that, by a control that keeps its stiffness */
+} YieldedEnergy;
+void correspondence_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy);
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
  *  1 + (G - G^T) / 2. Written less 1.

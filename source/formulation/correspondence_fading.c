@@ -51,22 +51,31 @@ double correspondence_held(const void *formulation, int64_t place)
   return energy.held;
 }
 
-double correspondence_held_by_yielded(const void *formulation, int64_t place)
+/** Returns true if a point's law has less than 0.7 of its stiffness left, as a secant from the unstrained state. */
+static bool has_yielded(const Points *points, const Material *m, int64_t place)
 {
-  const Correspondence *c = formulation;
-  const Points *points = c->points;
-  const Material *m = points_material(points, place);
-  const double yielded = 0.7; /* of the stiffness is left, at most */
+  const double yielded = 0.7;
   double work = 0, deviators = 0, strain[6];
-  if (!correspondence_control_lasts(c, m)) return 0;
+  if (m->law->linear) return false;
   for (int k = 0; k < 6; ++k) {
     strain[k] = points->strain[k][place] + (points->initial[k] ? points->initial[k][place] : 0);
     work += points->stress[k][place] * strain[k];
   }
   const double volume = strain[XX] + strain[YY] + strain[ZZ];
   for (int k = 0; k < 3; ++k) deviators += 2 * pow(strain[k] - volume / 3, 2) + strain[k + 3] * strain[k + 3];
-  if (!(work < yielded * (m->bulk * volume * volume + m->shear * deviators))) return 0;
-  return correspondence_held(c, place);
+  return work < yielded * (m->bulk * volume * volume + m->shear * deviators);
+}
+
+void correspondence_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy)
+{
+  const Correspondence *c = formulation;
+  const Material *m = points_material(c->points, place);
+  *energy = (YieldedEnergy){0};
+  if (c->control == CONTROL_NONE || !has_yielded(c->points, m, place)) return;
+  StoredEnergy stored;
+  correspondence_stored_energy(c, place, 0, &stored);
+  *energy = (YieldedEnergy){.stored = stored.stored, .held = stored.held};
+  if (correspondence_control_lasts(c, m)) energy->lasting = stored.held;
 }
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)

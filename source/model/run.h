@@ -2,6 +2,7 @@
 #ifndef BRECCIA_MODEL_RUN_H
 #define BRECCIA_MODEL_RUN_H
 
+#include "formulation/correspondence.h"
 #include "model/model.h"
 #include "results/result_file.h"
 #include <stdio.h>
@@ -56,6 +57,12 @@ void run_tell_compressions(const breccia_model *model, Text *text);
 /** Loads and supports in it: a list for summary.json, and lines for people. */
 void run_add_loads(const breccia_model *model, Text *text);
 void run_tell_loads(const breccia_model *model, Text *text);
+/** Share of the stored energy above which control of zero-energy modes carries too much where laws have yielded. */
+extern const double run_most_control;
+/** Sums of the energies of all places whose points have yielded. */
+YieldedEnergy run_yielded_energy(const Domain *domain);
+/** Adds to summary.json by what measures a body bears its loads, beside forces out of balance and kinetic energy. */
+void run_add_measures(const breccia_model *model, Text *text);
 /** Puts what the run did into words, for breccia_model_outcome. */
 void run_tell_outcome(Run *run, int status);
 

@@ -1,6 +1,6 @@
 /* What a run did: summary.json, and the same in words. */
 #include "domain/toughness.h"
-#include "formulation/correspondence.h"
+#include "model/ground_step.h"
 #include "model/run.h"
 
 #include "results/checkpoint.h"
@@ -252,6 +252,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     run_add_bars(model, &t);
     add_balance(s, &t);
     add_rest(s, &t);
+    run_add_measures(model, &t);
   }
   text_add(&t, "  \"peaks\": {");
   const Peaks *p = &model->peaks;
@@ -355,24 +356,32 @@ static void tell_inverted(const Domain *d, const char *length, Text *t)
              p->position[2][first], length);
 }
 
-/** What control of zero-energy modes holds where a law has yielded: it keeps its stiffness there, and carries more and more beside what flows. */
+/** Warns where control that keeps its stiffness carries load beside laws that have yielded. */
 static void tell_control(const Domain *d, double stored, Text *t)
 {
-  const Particles *p = d->particles;
-  const double much = 0.05;
-  double held = 0;
-  for (int32_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    const Region *region = domain_region(d, i);
-    if (!strcmp(region->type->name, "correspondence") && d->counted[i] > 0)
-      held += correspondence_held_by_yielded(region->formulation, i);
-  }
-  if (held > much * stored)
+  const YieldedEnergy yielded = run_yielded_energy(d);
+  if (yielded.lasting > run_most_control * stored)
     text_add(t,
              "warning: where laws have yielded, control of zero-energy modes holds %.2g %% of the stored energy: it "
              "carries load beside them, and limit loads come out too high; take 'zero-energy control: {silling: ..., "
              "fades: yielding}'\n",
-             100 * held / stored);
+             100 * yielded.lasting / stored);
+}
+
+/** Says by what factor loads divide strengths in the end, which is the last one with an equilibrium where the run has failed. */
+static void tell_strength(const breccia_model *model, bool failed, Text *t)
+{
+  const Solver *s = &model->solver;
+  bool any = false;
+  for (int k = 0; k < model->loading.count; ++k)
+    any |= model->loading.loads[k].type == &strength_reduction_load && load_acts(s->loading, &model->loading.loads[k]);
+  if (any)
+    text_add(t, "strengths are divided by %.4g%s\n", loading_strength_reduction(s->loading, s->clock.time),
+             failed ? " in the last state that the run came to" : "");
+  const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
+  if (step > 0)
+    text_add(t, "at %.0f spacings across the height of the ground's step the factor is up to %.0f %% too high\n", step,
+             100 * ground_step_excess(step));
 }
 
 /** Energy of strains that are roundings: what is less says nothing. */
@@ -424,6 +433,7 @@ void run_tell_outcome(Run *run, int status)
                                                   : "begin it again: there is no checkpoint yet");
   tell_stages(s, time, t);
   run_tell_loads(model, t);
+  tell_strength(model, status == BRECCIA_FAILURE, t);
   double x[3];
   const BrokenBond *first = first_broken(d, x);
   if (first) {

@@ -280,6 +280,20 @@ static double steady(const void *section)
   return spec->quasi_static ? spec->quasi_static->steady : NAN;
 }
 
+/** Ends a quasi-static stage early, or half a hold later. */
+static void explicit_obey(Solver *run, QuasiStaticNext next)
+{
+  const Explicit *s = run->own;
+  Clock *clock = &run->clock;
+  if (next == QUASI_STATIC_GOES_ON) return;
+  clock->ended = next == QUASI_STATIC_ENDS;
+  clock->stage_end = clock->time;
+  clock->stage_last = clock->step;
+  if (clock->ended) return;
+  clock->stage_end += 0.5 * s->spec->quasi_static->hold * s->period;
+  ++clock->stage_last; /* until the next step plans the steps up to there */
+}
+
 /** Whether a stage that may end at rest has come to rest; looked at only now and then, at steps that a restart finds again. */
 static int look_for_rest(Solver *run, Text *warning, Error *error)
 {
@@ -290,15 +304,12 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
   Rest rest;
   clock->ended = last;
   const QuasiStaticSpec *slow = s->spec->quasi_static;
-  const double midway = slow ? clock->stage_time + quasi_static_midway(slow, s->period) : INFINITY;
-  const bool half = clock->time >= midway && clock->time - clock->time_step < midway;
   const bool asked = !isnan(s->spec->rest) && (last || (clock->step - clock->stage_step) % EVERY == 0),
-             judged = slow && last;
-  if (!asked && !judged && !half) return BRECCIA_OK;
+             judged = slow && quasi_static_is_due(run, slow, s->period, last);
+  if (!asked && !judged) return BRECCIA_OK;
   const int status = rest_find(run, &rest, error);
   if (status) return status;
-  if (half) quasi_static_look(run, &rest);
-  if (judged) quasi_static_judge(run, slow, &rest);
+  if (judged) explicit_obey(run, quasi_static_look(run, slow, s->period, &rest, last));
   if (!asked) return BRECCIA_OK;
   if (rest.meant && fmax(rest.unbalanced, rest.kinetic) < s->spec->rest) {
     clock->ended = 1;

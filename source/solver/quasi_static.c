@@ -17,7 +17,15 @@ static const Field quasi_static_fields[] = {
      .dimension = "1",
      .standard = "1",
      .range = "[0.1, 1e6]",
-     .meaning = "further periods, in which they stay as they are"},
+     .meaning = "further periods, in which they stay as they are; fewer where the body clearly fails"},
+    {.key = "longest hold",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(QuasiStaticSpec, longest),
+     .dimension = "1",
+     .standard = "",
+     .range = "[0.1, 1e6]",
+     .meaning = "periods up to which the hold goes on, half of 'hold' at a time, while the body still comes to rest; "
+                "when absent: four times 'hold'"},
     {.key = "damping ratio",
      .kind = FIELD_NUMBER,
      .offset = offsetof(QuasiStaticSpec, ratio),
@@ -53,6 +61,18 @@ const Section quasi_static_section = {
     .size = sizeof(QuasiStaticSpec),
     FIELDS(quasi_static_fields)};
 
+/* Thresholds of the verdict. */
+static const double longest_holds = 4; /* holds: of a body that still comes to rest, unless the deck says otherwise */
+static const double less =
+    0.98; /* of the forces out of balance half a hold before: bodies that fail slowly have more */
+static const double far_from_rest = 4; /* times `steady`: forces out of balance of a body that clearly fails */
+static const double growing_looks = 4; /* half periods in a row in which it gets no nearer to rest */
+
+double quasi_static_longest(const QuasiStaticSpec *spec)
+{
+  return fmax(spec->hold, isnan(spec->longest) ? longest_holds * spec->hold : spec->longest);
+}
+
 double quasi_static_damping(const QuasiStaticSpec *spec, double period)
 {
   return 4 * acos(-1) * spec->ratio / period;
@@ -68,21 +88,21 @@ static void swing(double z, double time, double *away, double *speed)
   *speed = fading * (v * c - (x + z * v) * s);
 }
 
-double quasi_static_left(const QuasiStaticSpec *spec)
+double quasi_static_left(const QuasiStaticSpec *spec, double hold)
 {
   const double turn = 2 * acos(-1), rate = 1 / (turn * spec->ramp), lag = 2 * spec->ratio * rate;
   double away = lag, speed = -rate; /* from rate * time - lag */
   swing(spec->ratio, turn * spec->ramp, &away, &speed);
   away -= lag; /* from 1, which is where the load ends */
   speed += rate;
-  swing(spec->ratio, turn * spec->hold, &away, &speed);
+  swing(spec->ratio, turn * hold, &away, &speed);
   return fmax(fabs(away), speed * speed);
 }
 
-/** Whether the stage under way was too short for any verdict. */
-static bool is_too_short(const Solver *run, const QuasiStaticSpec *spec)
+/** Whether the stage under way was too short for any verdict. @param[in] held  periods */
+static bool is_too_short(const Solver *run, const QuasiStaticSpec *spec, double held)
 {
-  if (quasi_static_left(spec) > spec->steady) return true;
+  if (quasi_static_left(spec, held) > spec->steady) return true;
   if (isnan(spec->period)) return false;
   /* A period that was given may be far from the body's own: waves have not come through, or nothing at all has given way. */
   const Body *body = &run->domain->body;
@@ -95,25 +115,34 @@ static bool is_too_short(const Solver *run, const QuasiStaticSpec *spec)
   return !(e.dissipated + e.fracture + e.shed + e.friction > 1e-9 * run->ledger.paid);
 }
 
-double quasi_static_midway(const QuasiStaticSpec *spec, double period)
+/** Periods for which loads have been held. */
+static double quasi_static_held(const Solver *run, const QuasiStaticSpec *spec, double period)
 {
-  return (spec->ramp + 0.5 * spec->hold) * period;
+  return (run->clock.time - run->clock.stage_time) / period - spec->ramp;
 }
 
-void quasi_static_look(Solver *run, const Rest *rest)
+/** Whether the last step has come to or passed a multiple of a share of a period since loads are held, which need not be the first. */
+static bool quasi_static_passed(const Solver *run, const QuasiStaticSpec *spec, double period, double share)
 {
-  run->records[run->clock.stage].midway = rest->meant ? rest->unbalanced : 0;
+  const double tiny = 1e-9, now = quasi_static_held(run, spec, period) / share,
+               before = now - run->clock.time_step / (share * period);
+  return now + tiny >= 1 && floor(now + tiny) > floor(before + tiny);
+}
+
+bool quasi_static_is_due(const Solver *run, const QuasiStaticSpec *spec, double period, bool last)
+{
+  return last || quasi_static_passed(run, spec, period, 0.5 * spec->hold) ||
+         quasi_static_passed(run, spec, period, 0.5);
 }
 
 bool quasi_static_still_settles(const StageRecord *record)
 {
-  const double less = 0.98; /* bodies that fail slowly stay as far from rest as they are, or get farther */
   return record->steady == STEADY_NOT && record->unbalanced < less * record->midway;
 }
 
-void quasi_static_judge(Solver *run, const QuasiStaticSpec *spec, const Rest *rest)
+static void quasi_static_judge(const Solver *run, const QuasiStaticSpec *spec, double held, const Rest *rest,
+                               StageRecord *record)
 {
-  StageRecord *record = &run->records[run->clock.stage];
   record->unbalanced = rest->unbalanced;
   record->kinetic = rest->kinetic;
   if (!rest->meant)
@@ -121,7 +150,35 @@ void quasi_static_judge(Solver *run, const QuasiStaticSpec *spec, const Rest *re
   else if (rest->unbalanced <= spec->steady && rest->kinetic <= spec->steady)
     record->steady = STEADY;
   else
-    record->steady = is_too_short(run, spec) ? STEADY_TOO_SHORT : STEADY_NOT;
+    record->steady = is_too_short(run, spec, held) ? STEADY_TOO_SHORT : STEADY_NOT;
+}
+
+/** Counts the half periods in a row in which a body that is far from rest has got no nearer to rest. */
+static void quasi_static_count_growth(const QuasiStaticSpec *spec, const Rest *rest, StageRecord *record)
+{
+  const bool grows = rest->meant && rest->unbalanced > far_from_rest * spec->steady &&
+                     rest->unbalanced >= less * record->last_unbalanced && rest->kinetic >= less * record->last_kinetic;
+  record->growing = grows ? record->growing + 1 : 0;
+  record->last_unbalanced = rest->unbalanced;
+  record->last_kinetic = rest->kinetic;
+}
+
+QuasiStaticNext quasi_static_look(Solver *run, const QuasiStaticSpec *spec, double period, const Rest *rest, bool last)
+{
+  StageRecord *record = &run->records[run->clock.stage];
+  const double held = quasi_static_held(run, spec, period);
+  if (quasi_static_passed(run, spec, period, 0.5)) quasi_static_count_growth(spec, rest, record);
+  const bool gives_up = record->growing >= growing_looks;
+  if (last || gives_up) quasi_static_judge(run, spec, held, rest, record);
+  if (gives_up && record->steady == STEADY_NOT) return QUASI_STATIC_ENDS;
+  const bool waits = record->steady == STEADY_TOO_SHORT || quasi_static_still_settles(record);
+  const bool longer = last && waits && held + 0.25 * spec->hold < quasi_static_longest(spec);
+  if (!last || longer) {
+    if (longer || quasi_static_passed(run, spec, period, 0.5 * spec->hold))
+      record->midway = rest->meant ? rest->unbalanced : 0;
+    record->steady = STEADY_UNASKED;
+  }
+  return longer ? QUASI_STATIC_HOLDS_LONGER : QUASI_STATIC_GOES_ON;
 }
 
 const char *quasi_static_verdict(const StageRecord *record)

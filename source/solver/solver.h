@@ -43,7 +43,9 @@ typedef struct StageRecord {
   double came_to_rest;                      /* 1: it ended because the body was at rest */
   double steady;                            /* one of STEADY_... */
   double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
-  double midway; /* unbalanced, where the time in which it was to come to rest was half over; 0: not looked at */
+  double midway;                            /* unbalanced, half a hold before it was judged; 0: not looked at */
+  double last_unbalanced, last_kinetic,
+      growing; /* at the last half period of the hold, and how many in a row have brought the body no nearer to rest */
   double descended,
       relaxed; /* increments in which Newton's method did not come to rest, and whose ends descent by secants, and dynamic relaxation found */
 } StageRecord;

@@ -17,9 +17,9 @@ bracket() { sed -n 's/^fails between \([0-9.]*\)[^(]* and \([0-9.]*\).*/\1 \2/p'
 "$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.02 > out 2> errors
 equal "a bar that yields: status" $? 0
 bracket out | awk '{exit !($1 > 95 && $1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.98 + 1e-3)}' || fail "a bar that yields: $(cat out errors)"
-equal "heading of the table" "$(head -1 bar-failure/failure.csv)" 'load,outcome,forces out of balance,kinetic energy,case'
-equal "loads in their order" "$(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1 | sort -n | cmp - <(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1) && echo yes)" yes
-grep -q '^200 kN,stopped,,,' bar-failure/failure.csv || fail "the load beyond: $(cat bar-failure/failure.csv)"
+equal "heading of the table" "$(head -1 bar-failure/failure.csv)" 'step,load (kN),outcome,displacement (m),rate,plastic share,share of control,forces out of balance,kinetic energy,time held (s),case'
+equal "loads in their order" "$(tail -n +2 bar-failure/failure.csv | cut -d, -f2 | sort -n | cmp - <(tail -n +2 bar-failure/failure.csv | cut -d, -f2) && echo yes)" yes
+grep -q '^[0-9]*,200,stopped,,,,,,,,pull-200-kN$' bar-failure/failure.csv || fail "the load beyond: $(cat bar-failure/failure.csv)"
 grep -q '^stopped: the run ended before its time' out || fail "what stopped means: $(cat out)"
 # One at a time the middle is tried; what is done is not run again.
 "$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > one 2> errors || fail "one at a time: $(cat one errors)"
@@ -29,13 +29,13 @@ bracket one | awk '{exit !($1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.9 + 1e-3)
 "$breccia" failure bar.yaml --load 'variables.pull=-50 kN:-200 kN' --within 0.1 --jobs 1 --output pushed > pushed.out 2> errors
 equal "a bar that is pushed: status" $? 0
 equal "a bar that is pushed" "$(sed -n 's/^fails between -\([0-9.]*\)[^(]* and -\([0-9.]*\).*/\1 \2/p' pushed.out)" "$(bracket one)"
-equal "loads of a bar that is pushed" "$(tail -n +2 pushed/failure.csv | cut -d, -f1,2)" "$(tail -n +2 bar-failure/failure.csv | cut -d, -f1,2 | sed 's/^/-/')"
+equal "loads of a bar that is pushed" "$(tail -n +2 pushed/failure.csv | cut -d, -f2,3)" "$(tail -n +2 bar-failure/failure.csv | cut -d, -f2,3 | sed 's/^/-/')"
 # A pull that grows, falls and grows again with the load: the bar fails from 87.5 kN on, bears 150 kN and fails under 200 kN.
 sed 's/force: \["${pull}"/force: ["${max(50 kN, 150 kN - 4 * abs(pull - 100 kN), 4 * (pull - 150 kN))}"/' bar.yaml > again.yaml
 "$breccia" failure again.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 > out 2> errors
 equal "a bar that bears again: status" $? 0
 bracket out | awk '{exit !($1 > 75 && $1 <= 87.501 && $2 >= 87.499 && $2 < 97)}' || fail "a bar that bears again: $(cat out errors)"
-grep -q '^it also bears 150 kN, above a load under which it fails' out || fail "the load above: $(cat out errors)"
+grep -q '^outcomes are not monotonic: it also bears 150 kN at or above a load under which it fails; of the [0-9]* runs from 88.[89]*[ 0-9]*kN to 150 kN [0-9]* fail' out || fail "the load above: $(cat out errors)"
 # Concrete as a lattice of beams, pulled by a ramp of two periods and held for one more: 360 N a particle (Tuniki 2012, Table 4.1).
 cat > plate.yaml <<'Y'
 variables: {load: 300 N, period: 0.66 ms}
@@ -80,8 +80,61 @@ loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layer
 solve: {explicit: {quasi-static: {}}}
 DECK
 "$breccia" failure slow.yaml --load variables.pull=0.7:1.1 --within 0.2 > out 2>&1; equal "a slow body: status" $? 0
-grep -q "under 1.1 it still came to rest when the run ended: a longer 'hold'" out || fail "a slow body: $(cat out)"
+grep -q "under 1.1 it still came to rest when the run ended: a longer 'longest hold'" out || fail "a slow body: $(cat out)"
 grep -q "under 0.7 it still" out && fail "what it bears is called slow: $(cat out)"
+# ---- verdicts by more than rest ----
+# J2 in plane stress, whose control of zero-energy modes keeps its stiffness: at rest under 80 times its yield load of 3 MPa x 0.08 m x 0.1 m = 24 kN.
+cat > control.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {c: {model: j2, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, yield stress: 3 MPa}}
+body: {beam: {material: c, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {particles: [8, 4], first particle: [0, 0]}}}}
+peridynamics: {formulation: correspondence, space: plane stress}
+variables: {p: 10 kN}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {name: pull, on: {face: x+, layers: 1}, force: ["${p}", 0], history: {ramp to: 1}}
+solve: {static: {increments: 2, method: relaxation, residual: 1e-4}}
+results: {number: 1}
+pictures: []
+Y
+"$breccia" failure control.yaml --load 'variables.p=10 kN:1920 kN' --within 0.3 > out 2> errors
+equal "a bar held by control: status" $? 0
+sed -n 's/^bears \([0-9.]*\) kN; no verdict from \([0-9.]*\) kN on .*: control of zero-energy modes carries load.*/\1 \2/p; s/^fails between \([0-9.]*\) kN and \([0-9.]*\) kN.*/\1 \2/p' out |
+  awk '{good = $1 >= 20 && $1 < 48} END {exit !good}' || fail "a bar held by control bears more than twice its yield load: $(cat out errors)"
+grep -q '^ *1920 kN  no verdict' out || grep -q '^ *1920 kN  gives way' out || fail "80 times the yield load: $(cat out errors)"
+# A bar that hardens with a 200th of its stiffness comes to rest at all loads, but gives way at its yield load of 100 kN; with a larger --rate it bears 120 kN.
+sed 's/model: elastic-perfectly-plastic,/model: steel-bilinear, hardening ratio: 0.005,/' bar.yaml > hardening.yaml
+"$breccia" failure hardening.yaml --load 'variables.pull=50 kN:120 kN' --within 0.05 > out 2> errors
+equal "a bar that hardens: status" $? 0
+bracket out | awk '{exit !($1 > 90 && $1 < 105 && $2 > 99.9 && $2 < 110)}' || fail "a bar that hardens: $(cat out errors)"
+grep -q '^gives way: displacement grows too fast' out || fail "a bar that hardens gives way: $(cat out)"
+refused_by_rate=$("$breccia" failure hardening.yaml --load 'variables.pull=50 kN:120 kN' --rate 300 2>&1)
+contains "a larger rate" "$refused_by_rate" "does not fail under 120 kN; give a larger TO"
+# Strengths of 100, 104 and 108 kN by three seeds: at least half of them fail from 104 kN on.
+sed -e 's/pull: 50 kN/pull: 50 kN, seed: 0/' -e 's/yield stress: 250 MPa/yield stress: "${250 MPa + 10 MPa * seed}"/' bar.yaml > seeds.yaml
+"$breccia" failure seeds.yaml --load 'variables.pull=90 kN:120 kN' --seed 'variables.seed=0, 1, 2' --within 0.01 > out 2> errors
+equal "three seeds: status" $? 0
+bracket out | awk '{exit !($1 > 102 && $1 <= 104.001 && $2 >= 103.9 && $2 < 106)}' || fail "three seeds: $(cat out errors)"
+grep -q '^under 120 kN 3 of 3 runs fail' out && grep -q '^under 90 kN 0 of 3 runs fail' out && grep -q ' 1 of 3 runs fail' out || fail "shares of three seeds: $(cat out)"
+# Samples: 3 more loads, evenly spaced.
+"$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.3 --samples 2 --output sampled > out 2> errors
+equal "samples: status" $? 0
+grep -q '^ *100 kN ' out && grep -q '^ *150 kN ' out || fail "samples: $(cat out errors)"
+# Ground on a slope without end slides where strengths are divided by c / (gamma H sin b) + tan(phi) / tan(b) = 0.447 + 0.8 = 1.247.
+cat > slope.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+variables: {factor: 1, g: 10, lean: "${atan(0.5)}"}
+materials: {soil: {model: mohr-coulomb, density: 2, Young modulus: 1e4, Poisson ratio: 0.3, cohesion: 40, friction angle: "${atan(0.4)}", dilation angle: 0}}
+body: {b: {material: soil, lattice: square, spacing: 1, thickness: 1, shape: {box: {from: [0, 0], to: [4, 10]}}}}
+peridynamics: {formulation: correspondence, space: plane strain, horizon: 2.015 spacings, zero-energy control: {silling: 0.2, fades: yielding}}
+loads: [{gravity: ["${g*sin(lean)}", "${-g*cos(lean)}"]}, {on: {face: y-}, support: {held: all}}, {on: {face: x+}, support: {held: periodic}}]
+solve: [{name: at rest, laws: elastic, static: {increments: 1}},
+        {name: weaken, displacements: zero, loads: [{strength reduction: "${factor}", history: {ramp to: 1}}], static: {increments: 4, smallest increment: 0.1}}]
+pictures: []
+Y
+"$breccia" failure slope.yaml --load variables.factor=1:2 --within 0.02 > out 2> errors
+equal "a slope without end: status" $? 0
+sed -n 's/^factor of safety: \([0-9.]*\);.*/\1/p' out | awk '{good = $1 > 1.15 && $1 < 1.31} END {exit !good}' || fail "a slope without end: $(cat out errors)"
 refused() { # name, words, arguments
   local name=$1 words=$2
   shift 2
@@ -96,6 +149,7 @@ refused "two units" "two numbers of one unit" bar.yaml --load 'variables.pull=3 
 refused "the wrong way" "FROM must be the load that the body bears" bar.yaml --load 'variables.pull=4 kN:3 kN'
 refused "within nothing" "takes a number between 0 and 1" bar.yaml --load 'variables.pull=3 kN:4 kN' --within 0
 refused "an unknown key" "bul" bar.yaml --load 'variables.bull=3 kN:4 kN'
+refused "no rate" "--rate takes a number above 1" bar.yaml --load 'variables.pull=3 kN:4 kN' --rate 1
 refused "never fails" "give a larger TO" bar.yaml --load 'variables.pull=10 kN:20 kN'
 refused "fails at once" "give a smaller FROM" bar.yaml --load 'variables.pull=300 kN:400 kN'
 sed 's/, damping.*}}$/}}/' plate.yaml > free.yaml

@@ -300,7 +300,11 @@ static double pushed_footing(const char *fades, double strength, double *before,
       carried += p->internal[1][foot->selection.places[n]] * p->volume[foot->selection.places[n]];
   }
   *held = 0;
-  for (int32_t n = 0; n < p->count; ++n) *held += correspondence_held_by_yielded(formulation_of(m), p->place_of[n]);
+  for (int32_t n = 0; n < p->count; ++n) {
+    YieldedEnergy energy;
+    correspondence_yielded_energy(formulation_of(m), p->place_of[n], &energy);
+    *held += energy.lasting;
+  }
   *held /= domain_stored_energy(&m->domain);
   breccia_model_destroy(&m);
   return carried;
