@@ -203,17 +203,20 @@ static void tell_shares(const Search *s)
              failure_share(s, s->trials[k].load) * s->seeds, s->seeds);
 }
 
-/** Prints the factor of safety, where loads divide strengths. */
+/** Prints the factor of safety, where loads divide strengths, and by how much that of a step in the ground may be too high. */
 static void tell_factor(const Search *s, double bears, double fails)
 {
   const Trial *low = trial_at(s, bears), *high = failing_at(s, fails);
-  const double reduced = low ? low->measure[REDUCTION] : NAN;
-  if (!low || !high || isnan(reduced) || reduced == 1) return;
-  printf("factor of safety: %.4g; strengths divided by %.9g%s are borne, by %.9g%s not\n", reduced, low->load, s->unit,
-         high->load, s->unit);
+  if (!low || !high) return;
+  const double reduced = low->measure[REDUCTION];
+  if (!isnan(reduced) && reduced != 1)
+    printf("factor of safety: %.4g; strengths divided by %.9g%s are borne, by %.9g%s not\n", reduced, low->load,
+           s->unit, high->load, s->unit);
   if (low->measure[STEP] > 0)
-    printf("at %.0f spacings across the height the factor is up to %.0f %% too high: it may be %.4g\n",
-           low->measure[STEP], 100 * low->measure[EXCESS], reduced / (1 + low->measure[EXCESS]));
+    printf(
+        "at %.0f spacings across the height of the ground's step a factor of safety is up to %.0f %% too high: halve "
+        "the spacing and compare\n",
+        low->measure[STEP], 100 * low->measure[EXCESS]);
 }
 
 void failure_tell(const Search *s, double sign)

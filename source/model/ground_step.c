@@ -58,7 +58,7 @@ double ground_step_spacings(const Body *body, const Loading *loading)
 
 double ground_step_excess(double spacings)
 {
-  const double lost =
-      2.4; /* spacings of the height, with a horizon of 2.015 spacings: cuts and slopes of docs/choosing.md lose up to so many */
-  return spacings > 2 * lost ? lost / (spacings - lost) : 1;
+  const double most = 0.35,
+               few = 16; /* vertical cuts of 8 to 16 spacings came to 1.20 to 1.29 of closed forms (docs/choosing.md) */
+  return most * fmin(1, few / spacings);
 }
