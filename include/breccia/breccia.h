@@ -143,8 +143,9 @@ typedef struct breccia_law {
   /** 1: no compression is too large for it, so that the last words of a run tell the largest one. NULL: it yields,
    * crushes, or nobody knows. */
   int (*never_crushes)(const void *constants);
-  /** Divides the strengths among parameter values (in table order; NaN: not given) by a factor, for factors of safety: cohesions, yield stresses, and the
-   *  tangents of angles of friction. Histories must stay admissible under the strengths that `prepare` makes of them. NULL: the law does not tell. */
+  /** Divides the strengths among parameter values (in table order; NaN: not given) by a factor, for factors of safety:
+   * cohesions, yield stresses, and the tangents of angles of friction. Histories must stay admissible under the
+   * strengths that `prepare` makes of them. NULL: the law does not tell. */
   void (*reduce_strength)(double *values, double factor);
 } breccia_law;
 

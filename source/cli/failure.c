@@ -1,5 +1,5 @@
-/* The load under which a body fails: cases of a deck with ever closer loads, of which the lower one comes to rest and the higher one does not. Loads may be
- * factors that divide strengths, and each may be run with several seeds. */
+/* The load under which a body fails: cases of a deck with ever closer loads, of which the lower one comes to rest and
+ * the higher one does not. Loads may be factors that divide strengths, and each may be run with several seeds. */
 #include "failure.h"
 
 #include <limits.h>

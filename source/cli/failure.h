@@ -1,5 +1,5 @@
-/* The verb 'failure' in parts: the search for the load (failure.c), the verdict on each run (failure_verdict.c), and what is printed and written
- * (failure_report.c). A trial is one run under one load; with seeds a load has several. */
+/* The verb 'failure' in parts: the search for the load (failure.c), the verdict on each run (failure_verdict.c), and
+ * what is printed and written (failure_report.c). A trial is one run under one load; with seeds a load has several. */
 #ifndef BRECCIA_CLI_FAILURE_H
 #define BRECCIA_CLI_FAILURE_H
 
@@ -69,9 +69,11 @@ typedef struct Search {
 
 /** Judges case k of a study by its measures. */
 Trial failure_judge(Search *search, const breccia_study *study, int k, double load);
-/** Sorts trials by load and compares those that came to rest: where displacement begins to grow too fast with the load, the body gives way. */
+/** Sorts trials by load and compares those that came to rest: where displacement begins to grow too fast with the load,
+ * the body gives way. */
 void failure_compare(Search *search);
-/** Finds the largest load that the body bears below all under which it fails or there is no verdict, and the least of these; INFINITY: none. */
+/** Finds the largest load that the body bears below all under which it fails or there is no verdict, and the least of
+ * these; INFINITY: none. */
 void failure_bracket(const Search *search, double *bears, double *fails);
 /** Returns the share of the runs under a load that fail or have no verdict. */
 double failure_share(const Search *search, double load);

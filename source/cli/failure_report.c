@@ -1,5 +1,5 @@
-/* What the verb 'failure' prints and writes: a table with the measures of every run, the same as failure.csv with a curve of displacement over load, and
- * sentences on the loads between which the body fails. */
+/* What the verb 'failure' prints and writes: a table with the measures of every run, the same as failure.csv with a
+ * curve of displacement over load, and sentences on the loads between which the body fails. */
 #include "failure.h"
 
 #include <errno.h>
@@ -108,7 +108,8 @@ static void write_trials(const Search *s, FILE *out)
   free(summary);
 }
 
-/** Draws displacement over load. The table has the same numbers, so that a picture that cannot be drawn is no failure. */
+/** Draws displacement over load. The table has the same numbers, so that a picture that cannot be drawn is no failure.
+ */
 static void draw_curve(const Search *s)
 {
   breccia_plot plot;
@@ -203,7 +204,8 @@ static void tell_shares(const Search *s)
              failure_share(s, s->trials[k].load) * s->seeds, s->seeds);
 }
 
-/** Prints the factor of safety, where loads divide strengths, and by how much that of a step in the ground may be too high. */
+/** Prints the factor of safety, where loads divide strengths, and by how much that of a step in the ground may be too
+ * high. */
 static void tell_factor(const Search *s, double bears, double fails)
 {
   const Trial *low = trial_at(s, bears), *high = failing_at(s, fails);

@@ -1,5 +1,6 @@
-/* The verdict on each run of the verb 'failure', by several measures: forces out of balance, kinetic energy, the displacement rate from load to load, and what
- * makes a state of rest doubtful. Thresholds stand in one table each, with their reasons. */
+/* The verdict on each run of the verb 'failure', by several measures: forces out of balance, kinetic energy, the
+ * displacement rate from load to load, and what makes a state of rest doubtful. Thresholds stand in one table each,
+ * with their reasons. */
 #include "failure.h"
 
 #include <math.h>
@@ -108,7 +109,8 @@ static double displacement_at(const Search *s, int first)
   return count ? sum / count : NAN;
 }
 
-/** Gives all runs under a load a rate, and those that came to rest their verdict by it. @return the first trial of the next load */
+/** Gives all runs under a load a rate, and those that came to rest their verdict by it. @return the first trial of the
+ * next load */
 static int take_rate(Search *s, int first, double rate, bool gives_way)
 {
   int k = first;

@@ -59,7 +59,8 @@ void material_destroy(Material *material);
 /** Returns true if the law tells how to divide its strengths by a factor. */
 bool material_can_reduce(const Material *material);
 /** Divides the strengths as given by a factor, in place of the present one. By one thread, between updates.
- *  @param[out] reason  why the law refuses them @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strengths as they were */
+ *  @param[out] reason  why the law refuses them @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strengths as they
+ * were */
 int material_reduce(Material *material, double factor, char *reason, size_t size);
 
 /** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.

@@ -1,5 +1,6 @@
-/* Strength reduction: the factor by which loads divide the strengths of laws at a time (loading/load/strength_reduction.c). The constants of a law are made
- * again from its parameters whenever the factor has changed, so that they depend on the time alone and not on the way to it. */
+/* Strength reduction: the factor by which loads divide the strengths of laws at a time
+ * (loading/load/strength_reduction.c). The constants of a law are made again from its parameters whenever the factor
+ * has changed, so that they depend on the time alone and not on the way to it. */
 #include "domain/domain.h"
 
 #include "loading/load.h"

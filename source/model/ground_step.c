@@ -1,5 +1,5 @@
-/* The step in the surface of ground: the height of a slope, a cut or a pit, in spacings. How far the factor of safety of a step comes out too high follows from
- * that number alone, as a slip line ends in families that the surface cuts off (docs/choosing.md). */
+/* The step in the surface of ground: the height of a slope, a cut or a pit, in spacings. By this number alone a bound
+ * is told for how far the factor of safety of a step comes out too high; it is what was measured (docs/choosing.md). */
 #include "model/ground_step.h"
 
 #include "base/memory.h"

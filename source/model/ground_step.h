@@ -5,7 +5,8 @@
 #include "body/body.h"
 #include "loading/load.h"
 
-/** Returns by how many spacings the highest column of particles along gravity ends above the lowest one; 0: gravity does not act, or memory is out. */
+/** Returns by how many spacings the highest column of particles along gravity ends above the lowest one; 0: gravity
+ * does not act, or memory is out. */
 double ground_step_spacings(const Body *body, const Loading *loading);
 
 /** Returns by what share the factor of safety of such a step comes out too high at most; at most 1. */

@@ -1,5 +1,6 @@
-/* Measures of a body at the end of a run, by which 'breccia failure' judges whether it bears its loads: displacement, the share of energy that is spent, what
- * control of zero-energy modes holds, and how long loads have been steady. solver/rest.h has forces out of balance and kinetic energy. */
+/* Measures of a body at the end of a run, by which 'breccia failure' judges whether it bears its loads: displacement,
+ * the share of energy that is spent, what control of zero-energy modes holds, and how long loads have been steady.
+ * solver/rest.h has forces out of balance and kinetic energy. */
 #include "model/ground_step.h"
 #include "model/run.h"
 

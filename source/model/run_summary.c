@@ -368,7 +368,8 @@ static void tell_control(const Domain *d, double stored, Text *t)
              100 * yielded.lasting / stored);
 }
 
-/** Says by what factor loads divide strengths in the end, which is the last one with an equilibrium where the run has failed. */
+/** Says by what factor loads divide strengths in the end, which is the last one with an equilibrium where the run has
+ * failed. */
 static void tell_strength(const breccia_model *model, bool failed, Text *t)
 {
   const Solver *s = &model->solver;

@@ -121,7 +121,8 @@ static double quasi_static_held(const Solver *run, const QuasiStaticSpec *spec, 
   return (run->clock.time - run->clock.stage_time) / period - spec->ramp;
 }
 
-/** Whether the last step has come to or passed a multiple of a share of a period since loads are held, which need not be the first. */
+/** Whether the last step has come to or passed a multiple of a share of a period since loads are held, which need not
+ * be the first. */
 static bool quasi_static_passed(const Solver *run, const QuasiStaticSpec *spec, double period, double share)
 {
   const double tiny = 1e-9, now = quasi_static_held(run, spec, period) / share,

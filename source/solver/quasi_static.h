@@ -22,18 +22,20 @@ double quasi_static_damping(const QuasiStaticSpec *spec, double period);
 /** Largest hold of a stage, in periods. */
 double quasi_static_longest(const QuasiStaticSpec *spec);
 
-/** Share of its load by which a single vibration with this period is out of balance at the end of a hold, or its kinetic energy's of the work, whichever
- *  is more: a body that bears its loads is no nearer to rest. @param[in] hold  in periods */
+/** Share of its load by which a single vibration with this period is out of balance at the end of a hold, or its
+ * kinetic energy's of the work, whichever is more: a body that bears its loads is no nearer to rest. @param[in] hold in
+ * periods */
 double quasi_static_left(const QuasiStaticSpec *spec, double hold);
 
 /** What a stage does after a step at which it was looked at. */
 typedef enum QuasiStaticNext { QUASI_STATIC_GOES_ON, QUASI_STATIC_HOLDS_LONGER, QUASI_STATIC_ENDS } QuasiStaticNext;
 
-/** Returns true if the body is to be looked at after a step: each half of the hold, each half period of it, and at the end.
+/** Returns true if the body is to be looked at after a step: each half of the hold, each half period of it, and at the
+ * end.
  *  @param[in] last  the step ends the stage */
 bool quasi_static_is_due(const Solver *run, const QuasiStaticSpec *spec, double period, bool last);
-/** Notes how far the body is from rest, and whether it bears the loads of the stage under way. A body that clearly fails ends the stage early; one that
- *  still comes to rest when the hold is over is held longer. */
+/** Notes how far the body is from rest, and whether it bears the loads of the stage under way. A body that clearly
+ * fails ends the stage early; one that still comes to rest when the hold is over is held longer. */
 QuasiStaticNext quasi_static_look(Solver *run, const QuasiStaticSpec *spec, double period, const Rest *rest, bool last);
 
 /** Whether a body that counts as failed was still coming to rest at the end: a longer hold may find that it bears its loads. */

@@ -93,7 +93,7 @@ SKIPPED = {"title", "version", "deck", "settings", "variables", "wall_seconds", 
 SUMMARY_UNITS = {"time": "times", "time_step": "times", "stable_time_step": "times", "times": "times", "at": "positions and displacements",
                  "reactions": "forces", "loads": "forces", "moment of reactions": "moments", "moment of loads": "moments",
                  "displacement": "positions and displacements", "velocity": "velocities", "octahedral_shear_stress": "stresses",
-                 "mean_stress_lowest": "stresses", "mean_stress_highest": "stresses"}
+                 "mean_stress_lowest": "stresses", "mean_stress_highest": "stresses", "size": "positions and displacements", "held": "times"}
 BAR_UNITS = {"elements": "", "area": "areas", "stress": "stresses", "strain": "", "stress_so_far": "stresses", "stored": "energies", "dissipated": "energies", "yielded_share": "",
              "torn_share": "", "slip": "positions and displacements"}
 

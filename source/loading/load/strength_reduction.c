@@ -1,5 +1,6 @@
-/* Strength reduction: strengths of materials divided by a factor that may grow in time, until the body finds no equilibrium any more (Zienkiewicz,
- * Humpheson and Lewis 1975; Griffiths and Lane 1999). It acts on laws and not on particles; domain/strength.c hands the factor to them. */
+/* Strength reduction: strengths of materials divided by a factor that may grow in time, until the body finds no
+ * equilibrium any more (Zienkiewicz, Humpheson and Lewis 1975; Griffiths and Lane 1999). It acts on laws and not on
+ * particles; domain/strength.c hands the factor to them. */
 #include "loading/load.h"
 
 static int create(Load *load, const LoadMaking *making)

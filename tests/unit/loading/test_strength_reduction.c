@@ -1,4 +1,5 @@
-/* Strengths that loads divide: laws against the same laws with divided parameters, and slopes without end against their closed form. */
+/* Strengths that loads divide: laws against the same laws with divided parameters, and slopes without end against their
+ * closed form. */
 #include "support.h"
 
 #include "loading/load.h"
@@ -71,7 +72,8 @@ static void divided_strengths_are_those_of_divided_parameters(void **state)
   }
 }
 
-/** Ground on a slope without end, of height 10 m along its normal, whose gravity leans by atan(0.5); periodic along the slope. */
+/** Ground on a slope without end, of height 10 m along its normal, whose gravity leans by atan(0.5); periodic along the
+ * slope. */
 static breccia_model *slope_of(const char *formulation, const char *law, int layers)
 {
   breccia_model *m = model_of(
@@ -91,8 +93,9 @@ static breccia_model *slope_of(const char *formulation, const char *law, int lay
   return m;
 }
 
-/** The largest factor with an equilibrium: c / (gamma H sin(b)) + tan(phi) / tan(b), as shear and pressure at the base are gamma H times sin(b) and cos(b). The
- *  lowest particle stands half a spacing above the base, where both are less by its share of the height. */
+/** The largest factor with an equilibrium: c / (gamma H sin(b)) + tan(phi) / tan(b), as shear and pressure at the base
+ * are gamma H times sin(b) and cos(b). The lowest particle stands half a spacing above the base, where both are less by
+ * its share of the height. */
 static void slopes_without_end_slide_at_their_closed_form(void **state)
 {
   (void)state;
