@@ -591,6 +591,7 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_contact(model);
   plausibility_warn_of_supports(model);
   plausibility_warn_of_bars(model);
+  plausibility_warn_of_layers(model);
   plausibility_warn_of_places(model);
   plausibility_warn_of_pictures(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
@@ -627,6 +628,7 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
     rests |= solver_stage_rests(&model->solver, k);
   for (int r = 0; rests && r < model->domain.region_count; ++r)
     describe_control(model, &model->domain.regions[r], text);
+  plausibility_describe_layers(model, text);
   describe_frequencies(model, &e, search, text);
   for (int k = 0; k < model->loading.count; ++k) {
     describe_load(model, &model->loading.loads[k], &e, text);

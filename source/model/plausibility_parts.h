@@ -61,6 +61,11 @@ void plausibility_warn_of_contact(breccia_model *model);
 /** Warns of faces held opposite each other with too few layers between them. */
 void plausibility_warn_of_supports(breccia_model *model);
 
+/** Warns of layers of another stiffness that bonds reach across. */
+void plausibility_warn_of_layers(breccia_model *model);
+/** Adds a line on each region in which one of two materials that meet acts thinner than it is. */
+void plausibility_describe_layers(const breccia_model *model, Text *text);
+
 /** Warns of prescribed motions that strain laws with finite strain beyond 2 %. */
 void plausibility_warn_of_strains(breccia_model *model);
 

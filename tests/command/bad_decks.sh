@@ -352,6 +352,20 @@ for to in 0.2 0.1; do
   equal "a third block in the gap, up to $to: status" $? 0
   equal "a third block in the gap, up to $to: warnings of it" "$(grep -c "bonded across the gap" "$work/errors")" "$([ $to = 0.2 ] && echo 0 || echo 1)"
 done
+for rows in 1 2; do
+  cat > "$work/seam.yaml" << EOF
+materials: {s: {model: elastic, density: 2 t/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}, w: {model: elastic, density: 2 t/m3, Young modulus: 3 GPa, Poisson ratio: 0.2}}
+body:
+  a: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}
+  b: {material: w, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0.1], to: [0.2, $(echo "$rows" | awk '{print 0.1 + 0.02 * $1}')]}}}
+  c: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, $(echo "$rows" | awk '{print 0.1 + 0.02 * $1}')], to: [0.2, 0.24]}}}
+peridynamics: {space: plane stress, formulation: hybrid, horizon: 2.015 spacings}
+solve: {explicit: {steps: 3}}
+EOF
+  (cd "$work" && "$breccia" check seam.yaml > out 2> errors)
+  equal "a seam of $rows rows: status" $? 0
+  equal "a seam of $rows rows: warnings" "$(grep -c "seam.yaml:4:3: block 'b' is thinner than the horizon, and its Young's modulus is 0.1 times another one: bonds between 'a' and 'c' reach across it and do not know its stiffness; give it 2 rows of particles or more across" "$work/errors")" "$((2 - rows))"
+done
 two 0.08 0 "$standard"
 equal "blocks more than a horizon apart: warnings" "$(cat "$work/errors")" ""
 two -0.05 0 "$standard"
