@@ -142,6 +142,7 @@ static int check_ends(const Search *s, double from, double to, double fails)
 {
   if (failure_share(s, from) >= 0.5) {
     const Trial *first = &s->trials[0];
+    for (int k = 0; k < s->count && first->verdict == BEARS && s->trials[k].load == from; ++k) first = &s->trials[k];
     if (first->verdict == DOUBTFUL)
       complain("breccia failure: there is no verdict on the body under %.9g%s: %s", from, s->unit,
                failure_reason(first->reason));
@@ -158,6 +159,12 @@ static int check_ends(const Search *s, double from, double to, double fails)
 static int try_samples(Search *s, double from, double to, breccia_error *error)
 {
   int status = BRECCIA_OK;
+  if (s->samples > (MOST_TRIALS - s->count) / s->seeds) {
+    complain("breccia failure: --samples %lld, with %d run%s under each load and %d runs so far, are too many; at most "
+             "%d runs in all",
+             s->samples, s->seeds, s->seeds > 1 ? "s" : "", s->count, (int)MOST_TRIALS);
+    return BRECCIA_USER_ERROR;
+  }
   for (long long k = 1; k <= s->samples && !status; ++k) {
     const double load = from + (to - from) * ((double)k / (double)(s->samples + 1));
     bool known = false;

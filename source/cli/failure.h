@@ -37,7 +37,7 @@ enum {
   IMBALANCE,    /* of energies, over the work */
   REDUCTION,    /* factor by which strengths are divided */
   STEP,         /* height of the step in the surface of ground, in spacings */
-  EXCESS,       /* share by which its factor of safety comes out too high at most */
+  EXCESS,       /* estimate of the share by which its factor of safety comes out too high */
   MEASURES
 };
 

@@ -120,7 +120,9 @@ static void draw_curve(const Search *s)
   plot.x_label = s->key;
   plot.path = path;
   plot.curve = "failure.load : failure.displacement";
-  if (path && error && breccia_plot_curve(&s->folder, 1, &plot, error))
+  if (!path || !error)
+    complain("breccia failure: failure.svg: out of memory");
+  else if (breccia_plot_curve(&s->folder, 1, &plot, error))
     complain("breccia failure: failure.svg: %s", breccia_error_text(error));
   else if (!s->quiet)
     printf("  %s/failure.svg\n", s->folder);
@@ -176,23 +178,25 @@ static void tell_warnings(const Search *s, const Trial *t)
 /** Prints how many runs fail beside those that do not, where a body bears loads above one under which it fails. */
 static void tell_order(const Search *s, double fails)
 {
+  const double most = 0.5; /* of the runs under a load */
   double last = 0;
   int all = 0, bad = 0;
   for (int k = 0; k < s->count; ++k)
-    if (s->trials[k].verdict == BEARS) last = fmax(last, fabs(s->trials[k].load));
+    if (failure_share(s, s->trials[k].load) < most) last = fmax(last, fabs(s->trials[k].load));
   if (last < fails) return;
   printf("outcomes are not monotonic: it also bears");
-  for (int k = 0; k < s->count; ++k) {
+  for (int k = 0, told = 0; k < s->count; ++k) {
     const double load = fabs(s->trials[k].load);
     if (load < fails || load > last) continue;
     ++all;
     bad += s->trials[k].verdict != BEARS;
-    if (s->trials[k].verdict == BEARS) printf("%s %.9g%s", all - bad > 1 ? "," : "", s->trials[k].load, s->unit);
+    if ((k && s->trials[k - 1].load == s->trials[k].load) || failure_share(s, s->trials[k].load) >= most) continue;
+    printf("%s %.9g%s", told++ ? "," : "", s->trials[k].load, s->unit);
   }
   const Trial *first = trial_at(s, fails), *end = trial_at(s, last);
   printf(" at or above a load under which it fails; of the %d runs from %.9g%s to %.9g%s %d fail (%.0f %%). Give the "
-         "share of failures, by '--samples' or '--seed', and not one load\n",
-         all, first->load, s->unit, end->load, s->unit, bad, 100.0 * bad / all);
+         "share of failures, by '--samples'%s, and not one load\n",
+         all, first->load, s->unit, end->load, s->unit, bad, 100.0 * bad / all, s->seed ? "" : " or '--seed'");
 }
 
 /** Prints the share of failures under each load that has several runs. */
@@ -204,21 +208,20 @@ static void tell_shares(const Search *s)
              failure_share(s, s->trials[k].load) * s->seeds, s->seeds);
 }
 
-/** Prints the factor of safety, where loads divide strengths, and by how much that of a step in the ground may be too
- * high. */
+/** Prints between which factors a body fails whose load is a strength reduction, and by how much that of a step in the
+ * ground may be too high. */
 static void tell_factor(const Search *s, double bears, double fails)
 {
   const Trial *low = trial_at(s, bears), *high = failing_at(s, fails);
   if (!low || !high) return;
-  const double reduced = low->measure[REDUCTION];
-  if (!isnan(reduced) && reduced != 1)
-    printf("factor of safety: %.4g; strengths divided by %.9g%s are borne, by %.9g%s not\n", reduced, low->load,
-           s->unit, high->load, s->unit);
+  const double borne = fabs(low->load), not = fabs(high->load), factor = low->measure[REDUCTION];
+  if (isnan(factor) || fabs(factor - borne) > 1e-5 * borne)
+    return; /* the load is another one; six digits are written */
+  printf("factor of safety: between %.4g and %.4g\n", borne, not );
   if (low->measure[STEP] > 0)
-    printf(
-        "at %.0f spacings across the height of the ground's step a factor of safety is up to %.0f %% too high: halve "
-        "the spacing and compare\n",
-        low->measure[STEP], 100 * low->measure[EXCESS]);
+    printf("at %.0f spacings across the height of the ground's step it may be too high by some %.0f %%: halve the "
+           "spacing and compare\n",
+           low->measure[STEP], 100 * low->measure[EXCESS]);
 }
 
 void failure_tell(const Search *s, double sign)

@@ -27,8 +27,8 @@ static const char *const reasons[REASONS] = {
     [BY_FORCES] = "forces are out of balance at the end",
     [BY_MOTION] = "the body still moves at the end",
     [BY_RATE] = "displacement grows too fast with the load: the body gives way, and comes to rest elsewhere",
-    [BY_CONTROL] = "control of zero-energy modes carries load where laws have yielded; take 'zero-energy control: "
-                   "{silling: ..., fades: yielding}', or a smaller silling",
+    [BY_CONTROL] = ("control of zero-energy modes carries load where laws have yielded; take 'zero-energy control: "
+                    "{silling: ..., fades: yielding}', or a smaller silling"),
     [BY_INVERSION] = "particles are turned inside out",
     [BY_DISTANCE] = "the body has moved by more than its size",
     [BY_ENERGY] = "energies do not balance; take smaller steps",
@@ -85,7 +85,7 @@ Trial failure_judge(Search *s, const breccia_study *study, int k, double load)
   if (!s->rest_given && breccia_study_figure(study, k, "rest.limit", &limit)) s->rest = limit;
   judge_rest(s, &t);
   breccia_study_figure(study, k, "rest.settles", &settles);
-  t.settles = settles != 0 && t.verdict == FAILS;
+  t.settles = settles == 1 && t.verdict == FAILS; /* NaN where no stage is quasi-static */
   return t;
 }
 

@@ -6,7 +6,7 @@
 #include "loading/load.h"
 #include <math.h>
 
-/** Says which materials of a body a strength reduction can do nothing to. */
+/** Reports that the law of a material rejects its reduced strengths. @return BRECCIA_USER_ERROR */
 static int refuse_strength(const DeckReader *reader, const Load *load, const char *material, const char *reason)
 {
   return node_error(reader->document, load->node, reader->error, "strength reduction: material '%s': %s", material,

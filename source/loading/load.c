@@ -57,8 +57,9 @@ static const Field load_fields[] = {
      .offset = offsetof(LoadSpec, platen),
      .standard = "",
      .meaning = "of a motion prescribed in one direction. turning: a rigid plate presses on the particles and turns "
-                "freely about its centre, as on a ball joint, and 'on' moves in the mean: standard for patches that "
-                "move and are narrower than the body. fixed: all particles move alike, and the plate takes a moment",
+                "freely about its centre, as on a ball joint, and 'on' moves in the mean: standard for one patch, "
+                "narrower than the body, that moves and to no particle of which another motion is prescribed. fixed: "
+                "all particles move alike, and the plate takes a moment",
      .words = (const char *const[]){"turning", "fixed", NULL}},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \

@@ -175,15 +175,16 @@ static bool platen_is_one(const Constraint *c, const Body *body, int axis, doubl
   return one;
 }
 
-/** Returns true if the particles are a single patch; false if there is no memory to find out. */
-static bool platen_is_patch(const Constraint *c, const Body *body)
+/** Finds whether the particles are a single patch. @return BRECCIA_OK, or BRECCIA_FAILURE: no memory */
+static int platen_find_patch(const Constraint *c, const Body *body, bool *patch, Error *error)
 {
-  double *room = memory_plain((size_t)c->load->selection.count, sizeof *room);
-  bool one = room != NULL;
-  for (int k = 0; k < body->dimensions && one; ++k)
-    if (platen_width(c, body, k) > 0) one = platen_is_one(c, body, k, room);
+  double *room = memory_zeroed((size_t)c->load->selection.count, sizeof *room, "platens", error);
+  if (!room) return BRECCIA_FAILURE;
+  *patch = true;
+  for (int k = 0; k < body->dimensions && *patch; ++k)
+    if (platen_width(c, body, k) > 0) *patch = platen_is_one(c, body, k, room);
   free(room);
-  return one;
+  return BRECCIA_OK;
 }
 
 /** Returns true if another motion is prescribed to one of the particles while this one is. */
@@ -223,10 +224,10 @@ static bool platen_is_mirrored(const Constraint *c, const Body *body)
   return false;
 }
 
-/** Returns true if a platen is under a load of which the deck does not say so. */
+/** Returns true if a platen is under a load of which the deck does not say so, if the load moves a single patch. */
 static bool platen_is_usual(const Loading *loading, const Constraint *c, const Body *body)
 {
-  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) && platen_is_patch(c, body) &&
+  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) &&
          !platen_is_held_across(loading, c, &body->particles) && !platen_is_mirrored(c, body);
 }
 
@@ -247,6 +248,9 @@ static int platen_choose(const LoadMaking *making, const Load *load)
                       "the others as 'free', or take 'platen: fixed'",
                       count);
   if (count != 1 || !(wanted || platen_is_usual(loading, found, making->body))) return BRECCIA_OK;
+  bool patch = wanted;
+  if (!wanted && platen_find_patch(found, making->body, &patch, making->reader->error)) return BRECCIA_FAILURE;
+  if (!patch) return BRECCIA_OK;
   return platen_create(found, making->body, making->reader->error);
 }
 

@@ -13,11 +13,10 @@
 #include "loading/load.h"
 
 /** Puts platens between loads that prescribe a motion in one direction and their particles: where the deck wants one
- * that turns, and where it says nothing and the load moves one patch that is narrower than the body. In the latter case a
- * patch stays fixed that lies on a plane of symmetry: some of its particles are held in another direction, or have
- * mirror images beside them.
+ *  that turns, and where it says nothing and the load moves one patch, narrower than the body, to no particle of which
+ *  another motion is prescribed or which stands beside its mirror image, as on a plane of symmetry.
  *  @return BRECCIA_OK; BRECCIA_USER_ERROR after a message where a platen is wanted and motions in several directions
- * are prescribed; BRECCIA_FAILURE: no memory */
+ *          are prescribed; BRECCIA_FAILURE: no memory */
 int platens_create(const LoadMaking *making);
 void platen_destroy(Platen *platen);
 

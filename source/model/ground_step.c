@@ -7,8 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** The axis along which gravity acts most, or -1. */
-static int axis_of_gravity(const Loading *loading)
+/** Returns the axis of the largest component of the first gravity load, or -1. @param[out] sign  1 where gravity acts
+ *  against the axis, which then points up; else -1 */
+static int axis_of_gravity(const Loading *loading, double *sign)
 {
   for (int k = 0; k < loading->count; ++k) {
     const LoadSpec *spec = loading->loads[k].spec;
@@ -16,6 +17,7 @@ static int axis_of_gravity(const Loading *loading)
     int axis = 0;
     for (int r = 1; r < 3; ++r)
       if (fabs(spec->of[LOAD_gravity].point[r]) > fabs(spec->of[LOAD_gravity].point[axis])) axis = r;
+    *sign = spec->of[LOAD_gravity].point[axis] > 0 ? -1 : 1;
     return axis;
   }
   return -1;
@@ -23,7 +25,8 @@ static int axis_of_gravity(const Loading *loading)
 
 double ground_step_spacings(const Body *body, const Loading *loading)
 {
-  const int up = axis_of_gravity(loading);
+  double sign = 1;
+  const int up = axis_of_gravity(loading, &sign);
   const Particles *p = &body->particles;
   const double spacing = body->largest_spacing;
   if (up < 0 || up >= body->dimensions || !(spacing > 0)) return 0;
@@ -45,7 +48,7 @@ double ground_step_spacings(const Body *body, const Loading *loading)
       inside &= at >= 0 && at < counts[k];
       column = column * counts[k] + at;
     }
-    if (inside) top[column] = fmax(top[column], p->position[up][i]);
+    if (inside) top[column] = fmax(top[column], sign * p->position[up][i]);
   }
   for (int64_t c = 0; top && c < columns; ++c) {
     if (isinf(top[c])) continue;
@@ -58,7 +61,8 @@ double ground_step_spacings(const Body *body, const Loading *loading)
 
 double ground_step_excess(double spacings)
 {
-  const double most = 0.35,
-               few = 16; /* vertical cuts of 8 to 16 spacings came to 1.20 to 1.29 of closed forms (docs/choosing.md) */
-  return most * fmin(1, few / spacings);
+  /* Vertical cuts of 8, 12 and 16 spacings came to 1.28, 1.25 and 1.20 of closed forms, one of 16 to 1.29 or more
+   * (docs/choosing.md): the excess falls as the root of the number at best. */
+  const double most = 0.35, few = 16;
+  return most * fmin(1, sqrt(few / spacings));
 }

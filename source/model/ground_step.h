@@ -9,7 +9,7 @@
  * does not act, or memory is out. */
 double ground_step_spacings(const Body *body, const Loading *loading);
 
-/** Returns by what share the factor of safety of such a step comes out too high at most; at most 1. */
+/** Returns an estimate of the share by which the factor of safety of such a step comes out too high; at most 0.35. */
 double ground_step_excess(double spacings);
 
 #endif

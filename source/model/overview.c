@@ -7,6 +7,7 @@
 #include "domain/toughness.h"
 #include "model/plausibility.h"
 #include "results/result_file.h"
+#include "solver/explicit.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,7 +91,8 @@ static void add_duration(Text *text, double seconds)
 }
 
 /** Returns true if stages to come may take more steps than the deck says: implicit ones cut steps that err by more than
- *  'local error', static ones increments in which a law or bonds leave no equilibrium near. */
+ *  'local error', static ones increments in which a law or bonds leave no equilibrium near, quasi-static ones hold longer
+ *  while the body still comes to rest. */
 static bool steps_may_be_cut(const breccia_model *model)
 {
   const Domain *d = &model->domain;
@@ -99,7 +101,8 @@ static bool steps_may_be_cut(const breccia_model *model)
   bool cut = false;
   for (int64_t k = clock->stage; k < clock->stages; ++k) {
     const SolveSpec *stage = model->solver.stages->items[k];
-    cut |= stage->of[SOLVER_implicit] || (stage->of[SOLVER_static] && yields);
+    const ExplicitSpec *explicit = stage->of[SOLVER_explicit];
+    cut |= stage->of[SOLVER_implicit] || (stage->of[SOLVER_static] && yields) || (explicit && explicit->quasi_static);
   }
   return cut;
 }

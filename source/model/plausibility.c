@@ -614,7 +614,7 @@ static void describe_step(const breccia_model *model, Text *text)
   if (step > 0)
     text_add(text,
              "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "
-             "out up to %.0f %% too high; halve the spacing and compare\n",
+             "out some %.0f %% too high; halve the spacing and compare\n",
              step, 100 * ground_step_excess(step));
 }
 

@@ -132,11 +132,11 @@ static void layers_meet(const Domain *d, const Region *region, int64_t slice, Me
     }
 }
 
-/** Spacings by which the softer of two layers acts thinner across their interface at most, by columns of layers of 12
- *  rows at 3.015 spacings: 0.3 at a ratio of 2, 1.0 at 10, 1.9 at 1000 (docs/choosing.md). */
-static double layers_shift(double ratio)
+/** Spacings by which the softer of two layers acts thinner across their interface: a fit to columns of layers at 3.015
+ *  spacings, 0.6 to 1.0 at a ratio of 10 and 1.2 to 1.9 at 1000 (docs/choosing.md), in proportion to the horizon. */
+static double layers_shift(double ratio, double horizon)
 {
-  return 2 * (1 - 1 / cbrt(ratio));
+  return 2.15 * horizon / 3.015 * (1 - 1 / cbrt(ratio));
 }
 
 /** Spacings by which the stiffer of two layers acts thinner along their interface in hybrid bodies, whose bonds of two
@@ -154,7 +154,7 @@ static void layers_describe(const Domain *d, const Region *region, const Meeting
   const double horizon = d->family.horizon / d->body.largest_spacing;
   text_add(text, "  blocks '%s' and '%s' meet, the first %.3g times softer: in '%s' the %s of them acts up to %.2f ",
            d->body.blocks[of->soft]->head.name, d->body.blocks[of->stiff]->head.name, of->ratio, region->type->name,
-           hybrid ? "second" : "first", hybrid ? layers_loss(of->ratio, horizon) : layers_shift(of->ratio));
+           hybrid ? "second" : "first", hybrid ? layers_loss(of->ratio, horizon) : layers_shift(of->ratio, horizon));
   text_add(text, "spacings thinner %s the interface\n", hybrid ? "along" : "across");
 }
 

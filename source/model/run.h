@@ -45,7 +45,8 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error);
 /** Reinforcing bars in it: a list for summary.json, and lines for people. Nothing where there are none. */
 void run_add_bars(const breccia_model *model, Text *text);
 void run_tell_bars(const breccia_model *model, Text *text);
-/** Returns true if a law flows or softens and takes the Green-Lagrange strain in a region (run_strains.c). */
+/** Returns true if a law has a history, or is in a server, and takes the Green-Lagrange strain in a region
+ *  (run_strains.c). */
 bool run_strain_matters(const Region *region, const Material *material);
 /** Adds the state that is observed to the largest strains of such laws. */
 void run_note_strains(breccia_model *model);

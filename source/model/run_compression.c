@@ -77,7 +77,7 @@ static double compression_strength(const breccia_model *model)
   double strength = NAN;
   for (int n = 0; bars && n < bars->lines.deck->count; ++n) {
     const BondSpec *bond = ((const BarSpec *)bars->lines.deck->items[n])->bond;
-    if (bond) strength = fmax(strength, bond->strength);
+    if (bond) strength = fmin(strength, bond->strength);
   }
   return strength;
 }
@@ -110,9 +110,9 @@ static void compression_tell(const breccia_model *model, int k, double strength,
   quantity_describe(in_si * largest, "Pa", t);
   text_add(t, ", at [%.4g, %.4g, %.4g] %s", at[0], at[1], at[2], length);
   if (!isnan(strength)) {
-    text_add(t, "; bars have a compressive strength of ");
+    text_add(t, "; bond of bars is given a compressive strength of ");
     quantity_describe(in_si * strength, "Pa", t);
-    text_add(t, " around them%s", largest > strength ? ": it would have CRUSHED" : "");
+    text_add(t, "%s", largest > strength ? ", at which the concrete would have CRUSHED" : "");
   }
   text_add(t, "\n");
 }

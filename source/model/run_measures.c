@@ -76,7 +76,7 @@ void run_add_measures(const breccia_model *model, Text *text)
   const Solver *s = &model->solver;
   const Energy e = solver_energy(s);
   const YieldedEnergy yielded = run_yielded_energy(d);
-  const double spent = e.dissipated + e.fracture + e.friction, all = e.stored + spent;
+  const double spent = e.dissipated + e.fracture + e.shed + e.friction, all = e.stored + spent;
   const double step = ground_step_spacings(&d->body, s->loading);
   int32_t first;
   text_add(text, "  \"measures\": {\"displacement\": %.10g", largest_displacement(d->particles));

@@ -381,8 +381,8 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
              failed ? " in the last state that the run came to" : "");
   const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
   if (step > 0)
-    text_add(t, "at %.0f spacings across the height of the ground's step the factor is up to %.0f %% too high\n", step,
-             100 * ground_step_excess(step));
+    text_add(t, "at %.0f spacings across the height of the ground's step the factor may be some %.0f %% too high\n",
+             step, 100 * ground_step_excess(step));
 }
 
 /** Energy of strains that are roundings: what is less says nothing. */
@@ -402,7 +402,7 @@ static void tell_energies(const Domain *d, const Energy *e, double rounding, Tex
   if (e->dissipated > rounding)
     text_add(t, "dissipated: by laws that yield or soften; the work of cracks in softening laws is here\n");
   if (e->fracture > rounding)
-    text_add(t, "fracture: what bonds held when they broke%s\n",
+    text_add(t, "fracture: energy of broken bonds at their limits%s\n",
              e->dissipated > rounding ? ", beside what laws had dissipated in them before" : "");
   const double held = domain_is_controlled(d) && e->stored > rounding ? domain_control_energy(d) / e->stored : 0;
   if (held > least)

@@ -51,9 +51,9 @@ struct LinearSolver {
    * share. */
   double stiffness_share, mass_factor;
   const ElasticStep *elastic; /* K is this stiffness; NULL: that at which the domain was linearised */
-  int64_t allowed;         /* products of one solution; 0: as many as it takes; minimal residuals end the round begun */
-  bool definite;           /* a solution ends where K turns out not to be positive definite, with no answer */
-  bool is_free;            /* the deck does not say which */
+  int64_t allowed; /* products of one solution; 0: as many as it takes; minimal residuals end the round begun */
+  bool definite;   /* where K turns out not to be positive definite no other way is taken: the caller asks for it */
+  bool is_free;    /* the deck does not say which */
   const LinearType *first; /* the way that was taken at the beginning */
   int64_t given_up, left;  /* ways that did not suit: by the state, which may come back, and those left so far */
   void *own;               /* what the type keeps */

@@ -463,7 +463,8 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   return NEWTON_SLOW;
 }
 
-/** Checks the equilibrium found, unless its stiffness is that of the last iteration. */
+/** Checks the stability of the state found by one more linearisation; not after a few iterations, in which the body
+ *  answers all but linearly. */
 static NewtonOutcome check_stability(Newton *n, double time, Error *error)
 {
   enum { FEW = 2 }; /* iterations, in which the body answers all but linearly */

@@ -24,8 +24,9 @@ static const Field quasi_static_fields[] = {
      .dimension = "1",
      .standard = "",
      .range = "[0.1, 1e6]",
-     .meaning = "periods up to which the hold goes on, half of 'hold' at a time, while the body still comes to rest; "
-                "when absent: four times 'hold'"},
+     .meaning =
+         "largest number of periods of hold, to which it is extended by half of 'hold' at a time while forces out "
+         "of balance still fall or the time was too short to tell; when absent: four times 'hold'"},
     {.key = "damping ratio",
      .kind = FIELD_NUMBER,
      .offset = offsetof(QuasiStaticSpec, ratio),
@@ -157,7 +158,8 @@ static void quasi_static_judge(const Solver *run, const QuasiStaticSpec *spec, d
 /** Counts the half periods in a row in which a body that is far from rest has got no nearer to rest. */
 static void quasi_static_count_growth(const QuasiStaticSpec *spec, const Rest *rest, StageRecord *record)
 {
-  const bool grows = rest->meant && rest->unbalanced > far_from_rest * spec->steady &&
+  const bool compared = record->last_unbalanced > 0; /* not at the first look */
+  const bool grows = compared && rest->meant && rest->unbalanced > far_from_rest * spec->steady &&
                      rest->unbalanced >= less * record->last_unbalanced && rest->kinetic >= less * record->last_kinetic;
   record->growing = grows ? record->growing + 1 : 0;
   record->last_unbalanced = rest->unbalanced;
@@ -173,7 +175,7 @@ QuasiStaticNext quasi_static_look(Solver *run, const QuasiStaticSpec *spec, doub
   if (last || gives_up) quasi_static_judge(run, spec, held, rest, record);
   if (gives_up && record->steady == STEADY_NOT) return QUASI_STATIC_ENDS;
   const bool waits = record->steady == STEADY_TOO_SHORT || quasi_static_still_settles(record);
-  const bool longer = last && waits && held + 0.25 * spec->hold < quasi_static_longest(spec);
+  const bool longer = last && waits && held + 0.5 * spec->hold < quasi_static_longest(spec) + 0.01 * spec->hold;
   if (!last || longer) {
     if (longer || quasi_static_passed(run, spec, period, 0.5 * spec->hold))
       record->midway = rest->meant ? rest->unbalanced : 0;

@@ -8,7 +8,7 @@
 typedef struct QuasiStaticSpec {
   SectionHead head;
   double ramp, hold; /* in periods */
-  double longest;    /* hold of a body that still comes to rest, in periods; NaN: LONGEST_HOLDS times `hold` */
+  double longest;    /* hold of a body that still comes to rest, in periods; NaN: longest_holds times `hold` */
   double ratio;      /* of critical damping */
   double period;     /* NaN: found */
   double steady;

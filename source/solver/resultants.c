@@ -92,7 +92,7 @@ static bool resultants_is_larger(const double now[3], const double largest[3])
 
 void resultants_note(Solver *s)
 {
-  const int64_t every = 10; /* explicit steps: what is shorter is a wave that the lattice hardly carries */
+  const int64_t every = 10; /* explicit steps between samples, to limit the cost: shorter peaks can be missed */
   Resultants *r = s->resultants;
   if (!r || (!s->type->few_steps && !s->clock.ended && s->clock.step % every)) return;
   resultants_of_motions(s, r->now);

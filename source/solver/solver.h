@@ -44,8 +44,9 @@ typedef struct StageRecord {
   double steady;                            /* one of STEADY_... */
   double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
   double midway;                            /* unbalanced, half a hold before it was judged; 0: not looked at */
-  double last_unbalanced, last_kinetic,
-      growing; /* at the last half period of the hold, and how many in a row have brought the body no nearer to rest */
+  double last_unbalanced;                   /* at the last look of the hold; 0: there was none */
+  double last_kinetic;                      /* at the last look */
+  double growing;                           /* number of looks in a row by which the body has come no nearer to rest */
   double descended,
       relaxed; /* increments in which Newton's method did not come to rest, and whose ends descent by secants, and dynamic relaxation found */
 } StageRecord;

@@ -274,7 +274,7 @@ NewtonOutcome static_try_others(Static *s, NewtonOutcome outcome, double end, bo
 
 /** Tries an increment by Newton's method, and by other ways where the method is stuck or leads to an equilibrium in
  * which the body does not stay: the body jumps to another equilibrium. Under control a failed try is repeated with
- * softened bonds that unload in the first iteration: which of them do, the slopes at their largest strain do not tell.
+ * secants of softened bonds in the first iteration, because tangents of loading cannot show which bonds unload.
  *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
 static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
 {

@@ -132,8 +132,7 @@ static void a_platen_that_speeds_up_does_not_tilt(void **state)
   }
 }
 
-/** A block that nothing else holds turns and falls as a rigid body under its weight and a push beside the centre of its
- * plate. */
+/** In space a plate with two leaders stays plane and takes no moment. */
 static void a_block_hangs_on_its_platen(void **state)
 {
   (void)state;
