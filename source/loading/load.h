@@ -212,6 +212,9 @@ int loading_enter(Loading *loading, const Particles *particles, int64_t stage, E
 /** Begins with the loads that are new in the stage under way: their histories count from this time, their motions from where the particles
  *  are. Particles that are tied from now on take their common velocity, by which no momentum is lost. Forces of loads that have ended are taken off. */
 void loading_begin(Loading *loading, Particles *particles, double time);
+/** Sets the velocities with which platens of the stage under way begin; in stages in motion, after loading_begin.
+ *  @param[in] step  of the stage */
+void loading_start_platens(Loading *loading, const Particles *particles, double time, double step);
 /** Rows of when and where loads began that are not there from the start. */
 void loading_state(Loading *loading, StateList *list);
 

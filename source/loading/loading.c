@@ -206,6 +206,16 @@ void loading_begin(Loading *loading, Particles *p, double time)
   take_up_forces(loading, p, time);
 }
 
+void loading_start_platens(Loading *loading, const Particles *p, double time, double step)
+{
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!constraint->platen || constraint->load->first != loading->stage || !(step > 0)) continue;
+    platen_start(constraint, p, time, step);
+    loading->speeds_set = true;
+  }
+}
+
 void loading_state(Loading *loading, StateList *list)
 {
   char name[40];

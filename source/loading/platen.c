@@ -272,7 +272,7 @@ void platen_destroy(Platen *platen)
   free(platen);
 }
 
-/** Divides generalised forces on the leaders by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
+/** Divides generalised forces on the leaders, or momenta, by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
 static void platen_accelerate(const Constraint *c, const Particles *p, const double force[2], double acceleration[2])
 {
   const Platen *q = c->platen;
@@ -290,6 +290,24 @@ static void platen_accelerate(const Constraint *c, const Particles *p, const dou
   const double determinant = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0];
   acceleration[0] = (mass[1][1] * force[0] - mass[0][1] * force[1]) / determinant;
   acceleration[1] = (mass[0][0] * force[1] - mass[1][0] * force[0]) / determinant;
+}
+
+void platen_start(const Constraint *c, const Particles *p, double time, double step)
+{
+  const Platen *q = c->platen;
+  const Selection *s = &c->load->selection;
+  const double given = constraint_velocity(c, time, step);
+  double momentum[2] = {0}, velocity[2];
+  for (int64_t n = 0; n < s->count; ++n) {
+    const int32_t i = s->places[n];
+    const double along = p->density[i] * p->volume[i] * (constraint_along(c, p->velocity, i) - c->part[n] * given);
+    for (int m = 0; m < q->leaders; ++m) momentum[m] += q->share[m][n] * along;
+  }
+  platen_accelerate(c, p, momentum, velocity);
+  for (int m = 0; m < q->leaders; ++m) {
+    const int32_t i = constraint_leader(c, m);
+    constraint_add(c, p->velocity, i, velocity[m] - constraint_along(c, p->velocity, i));
+  }
 }
 
 void platen_push(const Constraint *c, Particles *p, double time)

@@ -216,6 +216,14 @@ static void leave_stage(Solver *s, const Solver *before)
   loading_enter(s->loading, s->domain->particles, s->clock.stage, NULL);
 }
 
+/** Begins with the loads of the stage under way. */
+static void begin_loads(Solver *s)
+{
+  const Particles *p = s->domain->particles;
+  loading_begin(s->loading, s->domain->particles, s->clock.time);
+  if (!s->type->rests) loading_start_platens(s->loading, p, s->clock.time, s->clock.time_step);
+}
+
 int solver_next_stage(Solver *s, Text *warning, Error *error)
 {
   Solver before = *s;
@@ -231,7 +239,7 @@ int solver_next_stage(Solver *s, Text *warning, Error *error)
   }
   if (before.own) before.type->destroy(&before);
   if (!strcmp(s->stage->displacements, "zero")) zero_displacements(s->domain->particles);
-  loading_begin(s->loading, s->domain->particles, clock->time);
+  begin_loads(s);
   foresee(s);
   return solver_begin(s, error);
 }
@@ -252,7 +260,7 @@ void solver_stop_at(Solver *s, const double *times, int64_t count, bool again)
 int solver_begin(Solver *s, Error *error)
 {
   if (s->clock.stage == 0) {
-    loading_begin(s->loading, s->domain->particles, s->clock.time);
+    begin_loads(s);
     s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
   }
   const double kinetic = s->ledger.kinetic;

@@ -19,8 +19,12 @@ static const breccia_parameter parameters[] = {
      "flows, and confined soil bear too much"},
     {"tensile strength", "stress", "0", "[0, inf)",
      "largest principal stress, c cot(phi) at most, the tip of the pyramid; soil bears next to none, as a cohesion of "
-     "shear is none of tension"},
+     "shear is none of tension. At least a thousandth of the cohesion, by which equations keep a tangent"},
 };
+
+/* Tensile strength at least, in cohesions: bodies whose sides are free would stand at the corner of pyramid and cut-off
+ * from the first increment on, where tangents say nothing. */
+static const double least_tension = 1e-3;
 
 /** Normal of a plane, or with the dilation angle's sine its direction of flow; the cut-off's are one. */
 static void normal_of(int plane, double sine, double normal[3])
@@ -83,7 +87,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->sine = sin(v[FRICTION] * degree);
   c->dilation = sin(v[DILATION] * degree);
   c->limit = 2 * v[COHESION] * cos(v[FRICTION] * degree);
-  c->tensile = v[TENSILE];
+  c->tensile = fmax(v[TENSILE], least_tension * v[COHESION]);
   c->update = mohr_coulomb_update_chosen();
   for (int k = 0; k < COULOMB_SETS; ++k) c->returns[k] = return_to(c, &coulomb_sets[k]);
   if (c->dilation > c->sine) {

@@ -132,6 +132,29 @@ static void a_platen_that_speeds_up_does_not_tilt(void **state)
   }
 }
 
+/** A jack that moves at once pushes a body that is symmetric about the jack without turning, and books its blow. */
+static void a_platen_that_starts_at_once_does_not_turn(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"explicit: {end time: 0.1}",
+                                        "implicit: {end time: 0.1, time step: 0.002, local error: 1}"},
+                           *const motions[] = {"velocity: [free, -1]",
+                                               "displacement: [free, -1], history: {ramp to: 1}"};
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m = model_of(
+        MATERIAL "body: {b: {material: m, lattice: square, spacing: 10, thickness: 50, shape: {box: {from: [0, 0], to: "
+                 "[150, 50]}}}}\nperidynamics: {formulation: correspondence, space: plane stress}\n"
+                 "selections: {jack: {face: y+, inside: {box: {from: [50, 0], to: [100, 50]}}}}\n"
+                 "loads:\n  - {on: {face: y-}, displacement: [free, 0]}\n  - {name: jack, on: jack, %s}\nsolve: {%s}\n",
+        motions[k / 2], solvers[k % 2]);
+    step_surely(m, 1000000);
+    assert_near(moved_at(m, 55, 45), moved_at(m, 95, 45), 1e-9);
+    assert_near(moved_at(m, 75, 45), -0.1, 1e-9);
+    assert_balanced(m, k % 2 ? 1e-4 : 1e-5);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** In space a plate with two leaders stays plane and takes no moment. */
 static void a_block_hangs_on_its_platen(void **state)
 {
@@ -273,6 +296,7 @@ int main(void)
       cmocka_unit_test(a_platen_takes_no_moment),
       cmocka_unit_test(work_in_motion_is_balanced),
       cmocka_unit_test(a_platen_that_speeds_up_does_not_tilt),
+      cmocka_unit_test(a_platen_that_starts_at_once_does_not_turn),
       cmocka_unit_test(a_block_hangs_on_its_platen),
       cmocka_unit_test(reactions_go_on_where_a_platen_ends),
       cmocka_unit_test(a_platen_follows_a_control),

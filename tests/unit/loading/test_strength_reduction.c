@@ -153,9 +153,50 @@ static void wrong_reductions_are_refused(void **state)
   }
 }
 
+/** Soil without tension whose sides are free stands at the edge of the cut-off from the first increment on. */
+static void a_column_of_soil_without_tension_stands(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"hybrid, horizon: 1.5 spacings",
+                                             "correspondence, horizon: 2.015 spacings"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {soil: {model: mohr-coulomb, density: 2, Young modulus: 1e5, Poisson ratio: 0.3, cohesion: 10, "
+        "friction "
+        "angle: 30 deg}}\n"
+        "body: {b: {material: soil, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [8, 8]}}}}\n"
+        "peridynamics: {formulation: %s, space: plane strain}\n"
+        "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: x-}, support: {held: across}},\n"
+        "        {gravity: [0, -1], history: {ramp to: 1}}]\nsolve: {static: {increments: 2}}\n",
+        formulations[k]);
+    step_surely(m, INT64_MAX);
+    const Particles *p = m->domain.particles;
+    const double top = p->displacement[1][particles_nearest(p, (double[]){0.35, 0.75, 0})];
+    assert_near(top, -2.0 * 0.8 * 0.8 / 2 * (1 - 0.09) / 1e5, 0.15e-6 * 2);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void factors_that_come_to_nothing_are_refused(void **state)
+{
+  (void)state;
+  char *words =
+      refusal_of("units: {length: m, force: kN, time: s}\n"
+                 "materials: {m: {model: j2, density: 2, Young modulus: 1e3, Poisson ratio: 0.25, yield stress: 1}}\n"
+                 "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                 "loads: [{on: {face: z-, layers: 3}, displacement: [0, 0, 0]}, {strength reduction: 2, history: "
+                 "{table: [[0, 0], [1, "
+                 "-1]]}}]\nsolve: {static: {increments: 1}}\n");
+  holds_words(words, "is not above 0");
+  free(words);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_column_of_soil_without_tension_stands),
+      cmocka_unit_test(factors_that_come_to_nothing_are_refused),
       cmocka_unit_test(divided_strengths_are_those_of_divided_parameters),
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
       cmocka_unit_test(wrong_reductions_are_refused),
