@@ -108,8 +108,9 @@ static void *create(const FormulationParts *parts, Error *error)
       if (!b->body->lattices[block].chunks)
         error_add(
             error, BRECCIA_USER_ERROR,
-            "block '%s': particles from a file are calibrated in uniform expansion, over those whose neighbours "
-            "fill the horizon of %g; there are none, or another field is asked for; give 'calibration: continuum'",
+            "block '%s': particles from a file are calibrated over those whose neighbours fill the horizon of %g; "
+            "there "
+            "are none, or their bonds do not resist every strain; give another horizon, or 'calibration: continuum'",
             b->body->blocks[block]->head.name, b->family->horizon);
       else
         error_add(error, BRECCIA_USER_ERROR,

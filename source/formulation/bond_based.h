@@ -65,8 +65,8 @@ const Material *bond_material(const BondBased *b, int block);
 /** Finds out whether a slice has gaps. */
 void bond_note_gaps(BondBased *b, int64_t slice);
 
-/** True if the neighbours of a place fill the horizon to 95 %: of particles from a file, those that are inside. */
-bool bond_family_is_whole(const BondBased *b, int64_t place);
+/* Bonds of particles from a file are calibrated where families fill at least this share of the horizon: those of thin bodies are all at surfaces. */
+#define LEAST_FILLED 0.95
 
 /** Finds the surface correction (bond_surface.c). */
 int bond_correct_surface(BondBased *b, Error *error);

@@ -1,5 +1,6 @@
 #include "base/tensor.h"
 #include "formulation/bond_based.h"
+#include "formulation/whole_family.h"
 
 #include <string.h>
 
@@ -39,29 +40,58 @@ static void mandel_of(const double n[3], double m[MANDEL])
   for (int k = 0; k < MANDEL; ++k) m[k] = n[symmetric_row[k]] * n[symmetric_column[k]] * (k < 3 ? 1 : sqrt(2));
 }
 
-/** Stiffness of the infinite lattice of a block for c = 1: half the sum of w L n n n n. */
-static void lattice_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
+/** Adds half of w L n n n n. */
+static void add_bond(const double xi[3], double length, double weight, double c[MANDEL][MANDEL])
+{
+  const double n[3] = {xi[0] / length, xi[1] / length, xi[2] / length};
+  double m[MANDEL];
+  mandel_of(n, m);
+  for (int i = 0; i < MANDEL; ++i)
+    for (int j = 0; j < MANDEL; ++j) c[i][j] += 0.5 * weight * length * m[i] * m[j];
+}
+
+/** Mean over the families of particles from a file that are whole, so that surfaces do not count. NaN if there is none. */
+static void cloud_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
+{
+  const Family *f = b->family;
+  const double least = whole_family_volume(b->body, f, block, LEAST_FILLED);
+  double volume = 0;
+  for (int64_t place = 0; place < b->particles->places; ++place) {
+    const int64_t slice = place / SLICE;
+    const double own = b->particles->volume[place];
+    if (!whole_family_at(f, block, place, least)) continue;
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+      const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+      add_bond(bond.xi, bond.length, own * bond.weight, c);
+    }
+    volume += own;
+  }
+  for (int i = 0; i < MANDEL; ++i)
+    for (int j = 0; j < MANDEL; ++j) c[i][j] /= volume;
+}
+
+/** Stiffness of the infinite lattice of a block for c = 1, half the sum of w L n n n n; of particles from a file the mean of those inside. */
+static void inner_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
 {
   memset(c, 0, sizeof(double) * MANDEL * MANDEL);
   for (int k = b->family->pattern_begin[block]; k < b->family->pattern_begin[block + 1]; ++k) {
     const Pattern *p = &b->family->patterns[k];
-    double n[3] = {p->xi[0] / p->length, p->xi[1] / p->length, p->xi[2] / p->length}, m[MANDEL];
-    mandel_of(n, m);
-    for (int i = 0; i < MANDEL; ++i)
-      for (int j = 0; j < MANDEL; ++j) c[i][j] += 0.5 * p->weight * p->length * m[i] * m[j];
+    add_bond(p->xi, p->length, p->weight, c);
   }
+  if (!b->body->lattices[block].chunks) cloud_stiffness(b, block, c);
 }
 
-/** Young's modulus that the infinite lattice of a block shows along a direction for c = 1: 1 / (m . C^-1 m).
+/** Young's modulus that a stiffness shows along a direction: 1 / (m . C^-1 m).
  *  @return NaN if it resists no strain there */
-static double lattice_young(const BondBased *b, int block, const double n[3])
+static double young_along(double stiffness[MANDEL][MANDEL], int dimensions, const double n[3])
 {
   double c[MANDEL][MANDEL], m[MANDEL], x[MANDEL];
-  lattice_stiffness(b, block, c);
+  memcpy(c, stiffness, sizeof c);
   mandel_of(n, m);
   memcpy(x, m, sizeof x);
   for (int k = 0; k < MANDEL; ++k)
-    if (symmetric_row[k] >= b->body->dimensions || symmetric_column[k] >= b->body->dimensions)
+    if (symmetric_row[k] >= dimensions || symmetric_column[k] >= dimensions)
       c[k][k] = 1; /* the network of a plane or a bar has nothing to say here */
   for (int k = 0; k < MANDEL; ++k) {
     if (!(c[k][k] > 1e-12 * c[XX][XX])) return NAN;
@@ -80,56 +110,29 @@ static double lattice_young(const BondBased *b, int block, const double n[3])
   return 1 / compliance;
 }
 
+/** The same of the inside of a block for c = 1. */
+static double inner_young(const BondBased *b, int block, const double n[3])
+{
+  double c[MANDEL][MANDEL];
+  inner_stiffness(b, block, c);
+  return young_along(c, b->body->dimensions, n);
+}
+
 /** Modulus of the continuum in uniaxial stress within the body's space, as a multiple of Young's: nu = 1/4 in plane strain. */
 static double continuum_young(const BondBased *b)
 {
   return b->space == SPACE_PLANE_STRAIN ? 16.0 / 15 : 1;
 }
 
-bool bond_family_is_whole(const BondBased *b, int64_t place)
-{
-  const double pi = acos(-1), horizon = b->family->horizon;
-  const double full = b->body->dimensions == 3   ? 4 * pi / 3 * pow(horizon, 3)
-                      : b->body->dimensions == 2 ? pi * horizon * horizon * body_section(b->body)
-                                                 : 2 * horizon * body_section(b->body);
-  return b->particles->volume[place] + family_volume(b->family, (int32_t)place) >= 0.95 * full;
-}
-
-/** Half the sum of w L over the families of particles from a file: the mean of those that are whole, so that surfaces do not count.
- *  NaN if there is none. */
-static double cloud_expansion(const BondBased *b, int block)
-{
-  const Family *f = b->family;
-  double sum = 0, volume = 0;
-  for (int64_t slice = 0; slice < b->particles->slices; ++slice)
-    for (int lane = 0; b->particles->block[slice] == block && lane < SLICE; ++lane) {
-      int32_t place = (int32_t)(slice * SLICE + lane);
-      double own = b->particles->volume[place], energy = 0;
-      if (!bond_family_is_whole(b, place)) continue;
-      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-        if (!(f->intact[slot] >> lane & 1)) continue;
-        Bond bond = family_bond(f, slice, slot, lane);
-        energy += bond.weight * bond.length / 2;
-      }
-      sum += own * energy;
-      volume += own;
-    }
-  return sum / volume;
-}
-
 double bond_calibration(const BondBased *b, int block, Calibration calibration)
 {
   if (calibration == CALIBRATION_CONTINUUM) return 1;
-  double unit = bond_continuum_constant(b, 1);
-  const bool cloud = !b->body->lattices[block].chunks;
+  double unit = bond_continuum_constant(b, 1), c[MANDEL][MANDEL], sum = 0;
+  inner_stiffness(b, block, c);
   if (calibration == CALIBRATION_UNIAXIAL) {
-    if (cloud) return NAN;
     const double along[3] = {1, 0, 0};
-    return continuum_young(b) / (unit * lattice_young(b, block, along));
+    return continuum_young(b) / (unit * young_along(c, b->body->dimensions, along));
   }
-  double c[MANDEL][MANDEL], sum = 0;
-  if (cloud) sum = cloud_expansion(b, block);
-  lattice_stiffness(b, block, c);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) sum += c[i][j];
   /* Uniform expansion by s has the energy sum s^2 / 2: 6 E s^2 / 2 in space, 3 E and 3.2 E in the plane, E in a bar. */
@@ -169,13 +172,13 @@ double bond_shown_young(const void *formulation, int block, int axis)
 {
   const BondBased *b = formulation;
   const double along[3] = {axis == 0, axis == 1, axis == 2};
-  if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block)) return NAN;
-  return b->stiffness[block] * lattice_young(b, block, along) /
+  if (block_is_foreign(b->foreign, b->particles, block)) return NAN;
+  return b->stiffness[block] * inner_young(b, block, along) /
          (material_young(bond_material(b, block)) * continuum_young(b));
 }
 
-/** Says which moduli a lattice shows whose axes are not alike: along each, and the least and largest over all directions. */
-static void describe_directions(const BondBased *b, int block, double unit, Text *text)
+/** Says which moduli bonds show whose axes are not alike: along each, and the least and largest over all directions. */
+static void describe_directions(const BondBased *b, int block, double c[MANDEL][MANDEL], double unit, Text *text)
 {
   enum { ANGLES = 90 };
   const double step = acos(-1) / ANGLES;
@@ -184,14 +187,15 @@ static void describe_directions(const BondBased *b, int block, double unit, Text
   for (int azimuth = 0; azimuth < ANGLES; ++azimuth)
     for (int height = 0; height <= (dimensions == 3 ? ANGLES / 2 : 0); ++height) {
       const double round = azimuth * step, up = height * step;
-      const double n[3] = {cos(round) * cos(up), sin(round) * cos(up), sin(up)}, young = lattice_young(b, block, n);
+      const double n[3] = {cos(round) * cos(up), sin(round) * cos(up), sin(up)}, young = young_along(c, dimensions, n);
       least = fmin(least, young);
       largest = fmax(largest, young);
     }
-  text_add(text, "%s: a uniaxial patch shows ", b->body->blocks[block]->head.name);
+  text_add(text, "%s: a uniaxial patch%s shows ", b->body->blocks[block]->head.name,
+           b->body->lattices[block].chunks ? "" : " inside, away from its surfaces,");
   for (int k = 0; k < dimensions; ++k) {
     const double n[3] = {k == 0, k == 1, k == 2};
-    text_add(text, k ? ", %.3f along %c" : "%.3f of the wanted modulus along %c", unit * lattice_young(b, block, n),
+    text_add(text, k ? ", %.3f along %c" : "%.3f of the wanted modulus along %c", unit * young_along(c, dimensions, n),
              "xyz"[k]);
   }
   text_add(text, "; %.3f to %.3f in all directions\n", unit * least, unit * largest);
@@ -204,28 +208,30 @@ void bond_describe(const void *formulation, const Units *units, Text *text)
   const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
                space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};
   for (int block = 0; block < b->body->block_count; ++block) {
-    if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block)) continue;
-    double c = b->stiffness[block], wanted = material_young(bond_material(b, block)) * continuum_young(b);
-    if (isnan(lattice_young(b, block, axis))) {
+    if (block_is_foreign(b->foreign, b->particles, block)) continue;
+    const double unit = b->stiffness[block] / (material_young(bond_material(b, block)) * continuum_young(b));
+    const int dimensions = b->body->dimensions;
+    double c[MANDEL][MANDEL];
+    inner_stiffness(b, block, c);
+    if (isnan(young_along(c, dimensions, axis))) {
       text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
                b->body->blocks[block]->head.name);
       continue;
     }
-    if (b->body->dimensions == 1) {
+    if (dimensions == 1) {
       text_add(text, "%s: a stretched bar shows %.3f of the wanted modulus\n", b->body->blocks[block]->head.name,
-               c * lattice_young(b, block, axis) / wanted);
+               unit * young_along(c, dimensions, axis));
       continue;
     }
-    if (b->body->lattices[block].type->turns < b->body->dimensions) {
-      describe_directions(b, block, c / wanted, text);
+    if (!b->body->lattices[block].chunks || b->body->lattices[block].type->turns < dimensions) {
+      describe_directions(b, block, c, unit, text);
       continue;
     }
     text_add(text,
              "%s: a uniaxial patch shows %.3f of the wanted modulus along the axes, %.3f along the diagonals of the %s",
-             b->body->blocks[block]->head.name, c * lattice_young(b, block, axis) / wanted,
-             c * lattice_young(b, block, plane) / wanted, b->body->dimensions == 2 ? "plane" : "faces");
-    if (b->body->dimensions == 3)
-      text_add(text, ", %.3f along those of space", c * lattice_young(b, block, space) / wanted);
+             b->body->blocks[block]->head.name, unit * young_along(c, dimensions, axis),
+             unit * young_along(c, dimensions, plane), dimensions == 2 ? "plane" : "faces");
+    if (dimensions == 3) text_add(text, ", %.3f along those of space", unit * young_along(c, dimensions, space));
     text_add(text, "\n");
   }
 }

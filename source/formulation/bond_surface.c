@@ -6,6 +6,7 @@
  * inside is the whole family of the lattice, so that deep inside the factor is 1 whatever the calibration; among particles from a file,
  * those whose neighbours fill the horizon. It is found once, with the notches and cuts of the beginning. */
 #include "formulation/bond_based.h"
+#include "formulation/whole_family.h"
 
 #include "base/team.h"
 #include <math.h>
@@ -37,9 +38,10 @@ static void inner_energies(const BondBased *b, int block, double energy[3])
   for (int k = f->pattern_begin[block]; k < f->pattern_begin[block + 1]; ++k)
     add_energies(f->patterns[k].xi, f->patterns[k].length, f->patterns[k].weight, energy);
   int64_t count = 0;
-  for (int64_t place = 0; !b->body->lattices[block].chunks && place < b->particles->places; ++place)
-    if (b->particles->block[place / SLICE] == block && b->particles->number[place] >= 0 &&
-        bond_family_is_whole(b, place)) {
+  const bool cloud = !b->body->lattices[block].chunks;
+  const double least = cloud ? whole_family_volume(b->body, f, block, LEAST_FILLED) : 0;
+  for (int64_t place = 0; cloud && place < b->particles->places; ++place)
+    if (whole_family_at(f, block, place, least)) {
       family_energies(f, NULL, place, energy);
       ++count;
     }

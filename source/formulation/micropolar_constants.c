@@ -2,6 +2,7 @@
  * shear g^2 = |e n|^2 - s^2, the particles turning with the body. Sums of that over a family must be the energy of the continuum. */
 #include "base/tensor.h"
 #include "formulation/micropolar.h"
+#include "formulation/whole_family.h"
 
 #include <string.h>
 
@@ -31,11 +32,13 @@ static double mandel(int k)
   return k < 3 ? 1 : sqrt(2);
 }
 
-/** Adds w L n n n n / 2 of an axial stiffness of 1, and 6 w / L times what makes g^2 of a bending stiffness of 1. */
-static void add_link(const Pattern *p, int dimensions, Stiffness *axial, Stiffness *bending)
+/** Adds w L n n n n / 2 of an axial stiffness of 1, and 6 w / L times what makes g^2 of a bending stiffness of 1.
+ *  @param[in] share  of the weight w that counts */
+static void add_link(const Bond *bond, double share, int dimensions, Stiffness *axial, Stiffness *bending)
 {
   double along[MANDEL] = {0}, across[3][MANDEL] = {{0}}, n[3];
-  for (int k = 0; k < 3; ++k) n[k] = p->xi[k] / p->length;
+  const double weight = share * bond->weight;
+  for (int k = 0; k < 3; ++k) n[k] = bond->xi[k] / bond->length;
   for (int k = 0; k < MANDEL; ++k) {
     const int row = symmetric_row[k], column = symmetric_column[k];
     if (row >= dimensions || column >= dimensions) continue;
@@ -47,8 +50,8 @@ static void add_link(const Pattern *p, int dimensions, Stiffness *axial, Stiffne
     for (int j = 0; j < MANDEL; ++j) {
       double shear = -along[i] * along[j];
       for (int k = 0; k < 3; ++k) shear += across[k][i] * across[k][j];
-      axial->c[i][j] += p->weight * p->length / 2 * along[i] * along[j];
-      bending->c[i][j] += 6 * p->weight / p->length * shear;
+      axial->c[i][j] += weight * bond->length / 2 * along[i] * along[j];
+      bending->c[i][j] += 6 * weight / bond->length * shear;
     }
 }
 
@@ -71,6 +74,61 @@ static double product(const Stiffness *a, const Stiffness *b)
   for (int i = 0; i < MANDEL; ++i)
     for (int j = 0; j < MANDEL; ++j) sum += a->c[i][j] * b->c[i][j];
   return sum;
+}
+
+/* ---- families ---- */
+
+/** What the links of a family inside a block sum up to: of a lattice its own one, of particles from a file the mean of those that are inside. */
+typedef struct FamilySums {
+  int count; /* of lengths; more than MOST_LENGTHS: links cannot be right in every direction */
+  double length[MOST_LENGTHS];
+  Stiffness axial[MOST_LENGTHS], bending[MOST_LENGTHS]; /* by length */
+  Stiffness all_axial, all_bending;
+  double lengths, inverse; /* sums of w L and w / L; 0: there is no link */
+} FamilySums;
+
+static void add_to_sums(const Bond *bond, double share, int dimensions, FamilySums *sums)
+{
+  int l = 0;
+  while (l < sums->count && l < MOST_LENGTHS && fabs(bond->length - sums->length[l]) > 1e-3 * bond->length) ++l;
+  if (l < MOST_LENGTHS) sums->length[l] = bond->length;
+  if (l == sums->count && sums->count <= MOST_LENGTHS) ++sums->count;
+  add_link(bond, share, dimensions, &sums->all_axial, &sums->all_bending);
+  if (l < MOST_LENGTHS) add_link(bond, share, dimensions, &sums->axial[l], &sums->bending[l]);
+  sums->lengths += share * bond->weight * bond->length;
+  sums->inverse += share * bond->weight / bond->length;
+}
+
+/** Adds families of particles from a file, by their volumes. */
+static void add_families_inside(const Micropolar *m, int block, FamilySums *sums)
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  const double least = whole_family_volume(m->body, f, block, 0);
+  double volume = 0;
+  for (int turn = 0; turn < 2; ++turn)
+    for (int64_t place = 0; place < p->places; ++place) {
+      const int64_t slice = place / SLICE;
+      if (!whole_family_at(f, block, place, least)) continue;
+      if (!turn) volume += p->volume[place];
+      for (int64_t slot = f->first[slice]; turn && slot < f->first[slice + 1]; ++slot) {
+        if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+        const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+        add_to_sums(&bond, p->volume[place] / volume, m->body->dimensions, sums);
+      }
+    }
+}
+
+static FamilySums find_sums(const Micropolar *m, int block)
+{
+  FamilySums sums = {.count = 0};
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &m->family->patterns[k];
+    const Bond bond = {.xi = {p->xi[0], p->xi[1], p->xi[2]}, .length = p->length, .weight = p->weight};
+    add_to_sums(&bond, 1, m->body->dimensions, &sums);
+  }
+  if (!m->body->lattices[block].chunks) add_families_inside(m, block, &sums);
+  return sums;
 }
 
 /* ---- right in every direction ---- */
@@ -98,35 +156,27 @@ static bool fit(const Stiffness *parts, int count, const Stiffness *target, doub
   return true;
 }
 
-/** Links of one or two lengths: an axial stiffness for each, and bending of the shorter ones. */
-static void fit_lengths(const Micropolar *m, int block, const Stiffness *target, LinkConstants *constants)
+/** Links of one or two lengths: an axial stiffness for each, and bending of the shorter ones.
+ *  @param[in] tolerance  share of the stiffness that may be missed: files round their numbers */
+static void fit_lengths(const FamilySums *sums, const Stiffness *target, double tolerance, LinkConstants *constants)
 {
-  Stiffness parts[MOST_PARTS] = {{{{0}}}}, unused[MOST_LENGTHS] = {{{{0}}}};
-  int count = 0;
-  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
-    const Pattern *p = &m->family->patterns[k];
-    int l = 0;
-    while (l < count && fabs(p->length - constants->length[l]) > 1e-6 * p->length) ++l;
-    if (l == MOST_LENGTHS) return;
-    constants->length[l] = p->length;
-    if (l == count) ++count;
-  }
-  if (!count) return;
-  const int shorter = count == 2 && constants->length[1] < constants->length[0];
-  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
-    const Pattern *p = &m->family->patterns[k];
-    const int l = fabs(p->length - constants->length[0]) > 1e-6 * p->length;
-    add_link(p, m->body->dimensions, &parts[l], l == shorter ? &parts[count] : &unused[l]);
-  }
+  const int count = sums->count;
+  if (!count || count > MOST_LENGTHS) return;
+  const int shorter = count == 2 && sums->length[1] < sums->length[0];
+  Stiffness parts[MOST_PARTS];
+  for (int l = 0; l < count; ++l) parts[l] = sums->axial[l];
+  parts[count] = sums->bending[shorter];
   double factor[MOST_PARTS];
   if (!fit(parts, count + 1, target, factor)) return;
   Stiffness left = *target;
   for (int k = 0; k <= count; ++k)
     for (int i = 0; i < MANDEL; ++i)
       for (int j = 0; j < MANDEL; ++j) left.c[i][j] -= factor[k] * parts[k].c[i][j];
-  if (product(&left, &left) > 1e-18 * product(target, target)) return;
-  for (int l = 0; l < count; ++l) {
+  if (product(&left, &left) > tolerance * tolerance * product(target, target)) return;
+  for (int l = 0; l < count; ++l)
     if (factor[l] < 0) return;
+  for (int l = 0; l < count; ++l) {
+    constants->length[l] = sums->length[l];
     constants->of[l].axial = factor[l];
   }
   constants->of[shorter].bending = fmax(0, factor[count]);
@@ -148,22 +198,6 @@ static double influence_moment(const Micropolar *m, int power)
   return sum / (3.0 * INTERVALS);
 }
 
-/** Sums of w L and w / L over a whole family: on a lattice, or of scattered particles by integrals. */
-static void find_sums(const Micropolar *m, int block, double *lengths, double *inverse)
-{
-  const double pi = acos(-1), horizon = m->family->horizon;
-  const bool space = m->body->dimensions == 3;
-  *lengths = *inverse = 0;
-  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
-    *lengths += m->family->patterns[k].weight * m->family->patterns[k].length;
-    *inverse += m->family->patterns[k].weight / m->family->patterns[k].length;
-  }
-  if (m->body->lattices[block].chunks) return;
-  const double around = space ? 4 * pi * pow(horizon, 4) : 2 * pi * body_section(m->body) * pow(horizon, 3);
-  *lengths = around * influence_moment(m, space ? 3 : 2);
-  *inverse = around / (horizon * horizon) * influence_moment(m, space ? 1 : 0);
-}
-
 double micropolar_square_sum(const Micropolar *m)
 {
   const double pi = acos(-1), horizon = m->family->horizon;
@@ -172,15 +206,13 @@ double micropolar_square_sum(const Micropolar *m)
 }
 
 /** Uniform expansion costs no bending: its energy gives c. The trace of the stiffness is what all directions have in the mean: it gives d. */
-static LinkStiffness fit_mean(const Micropolar *m, int block, double lambda, double mu)
+static LinkStiffness fit_mean(const Micropolar *m, const FamilySums *sums, double lambda, double mu)
 {
   const bool space = m->body->dimensions == 3;
   const double expansion = space ? 9 * lambda + 6 * mu : 4 * (lambda + mu);
   const double trace = space ? 3 * lambda + 12 * mu : 2 * lambda + 6 * mu;
-  double lengths, inverse;
-  find_sums(m, block, &lengths, &inverse);
-  return (LinkStiffness){.axial = 2 * expansion / lengths,
-                         .bending = (trace - expansion) / (6 * (space ? 1 : 0.5) * inverse)};
+  return (LinkStiffness){.axial = 2 * expansion / sums->lengths,
+                         .bending = (trace - expansion) / (6 * (space ? 1 : 0.5) * sums->inverse)};
 }
 
 /* ---- rotational inertia ---- */
@@ -215,19 +247,25 @@ static double cell_moment(const LatticeType *type)
   return sum / (SAMPLES * SAMPLES * SAMPLES);
 }
 
+/** Mean volume of the particles of a block. */
+static double block_mean_volume(const Particles *p, int block)
+{
+  double volume = 0, count = 0;
+  for (int64_t i = 0; i < p->places; ++i) {
+    if (p->number[i] < 0 || p->block[i / SLICE] != block) continue;
+    volume += p->volume[i];
+    ++count;
+  }
+  return volume / count;
+}
+
 /** Of the cell of a particle as a solid: about the axis across the plane, or about any in space. */
 static double find_gyration(const Micropolar *m, int block)
 {
   const Lattice *lattice = &m->body->lattices[block];
   const bool space = m->body->dimensions == 3;
   if (!lattice->chunks) { /* a square or a cube of the same size */
-    double volume = 0, count = 0;
-    for (int64_t i = 0; i < m->particles->places; ++i) {
-      if (m->particles->number[i] < 0 || m->particles->block[i / SLICE] != block) continue;
-      volume += m->particles->volume[i];
-      ++count;
-    }
-    const double one = volume / count / body_section(m->body);
+    const double one = block_mean_volume(m->particles, block) / body_section(m->body);
     return (space ? pow(one, 2.0 / 3) : one) / 6;
   }
   const double square = lattice->spacing * lattice->spacing;
@@ -256,8 +294,9 @@ int micropolar_find_constants(Micropolar *m, int block, Error *error)
                      m->body->blocks[block]->head.name, m->space == SPACE_PLANE_STRESS ? "1/3 in plane stress" : "1/4",
                      material->name, poisson);
   const Stiffness target = wanted(m, lambda, mu);
-  constants->any = fit_mean(m, block, lambda, mu);
-  if (m->body->lattices[block].chunks) fit_lengths(m, block, &target, constants);
+  const FamilySums sums = find_sums(m, block);
+  constants->any = fit_mean(m, &sums, lambda, mu);
+  fit_lengths(&sums, &target, m->body->lattices[block].chunks ? 1e-9 : 1e-3, constants);
   if (!(constants->any.axial > 0) || !isfinite(constants->any.axial) || !isfinite(constants->any.bending))
     return error_add(error, BRECCIA_USER_ERROR,
                      "block '%s': its particles have no neighbours within the horizon of %g, so that there is no "
@@ -291,13 +330,11 @@ LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bon
 static void describe_mean(const Micropolar *m, int block, Text *text)
 {
   enum { ANGLES = 45 };
-  Stiffness axial = {{{0}}}, bending = {{{0}}};
+  const FamilySums sums = find_sums(m, block);
   const LinkStiffness any = m->constants[block].any;
   double lambda, mu, least = INFINITY, largest = 0;
   const double step = acos(-1) / ANGLES;
   find_lame(m, micropolar_material(m, block), &lambda, &mu);
-  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k)
-    add_link(&m->family->patterns[k], m->body->dimensions, &axial, &bending);
   for (int azimuth = 0; azimuth < ANGLES; ++azimuth)
     for (int height = 0; height <= (m->body->dimensions == 3 ? ANGLES / 2 : 0); ++height) {
       const double a = azimuth * step, h = height * step, n[3] = {cos(a) * cos(h), sin(a) * cos(h), sin(h)};
@@ -305,12 +342,13 @@ static void describe_mean(const Micropolar *m, int block, Text *text)
       for (int k = 0; k < MANDEL; ++k) e[k] = n[symmetric_row[k]] * n[symmetric_column[k]] * mandel(k);
       for (int i = 0; i < MANDEL; ++i)
         for (int j = 0; j < MANDEL; ++j)
-          sum += e[i] * e[j] * (any.axial * axial.c[i][j] + any.bending * bending.c[i][j]);
+          sum += e[i] * e[j] * (any.axial * sums.all_axial.c[i][j] + any.bending * sums.all_bending.c[i][j]);
       least = fmin(least, sum / (lambda + 2 * mu));
       largest = fmax(largest, sum / (lambda + 2 * mu));
     }
-  text_add(text, "%s: stretched in one direction only its lattice shows %.3f to %.3f of the wanted stiffness\n",
-           m->body->blocks[block]->head.name, least, largest);
+  text_add(text, "%s: stretched in one direction only its %s %.3f to %.3f of the wanted stiffness\n",
+           m->body->blocks[block]->head.name,
+           m->body->lattices[block].chunks ? "lattice shows" : "links inside show in the mean", least, largest);
 }
 
 static void describe_damage(const breccia_link *law, const char *name, Text *text)
@@ -335,13 +373,14 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
     if (block_is_foreign(m->foreign, m->particles, block)) continue;
     const LinkConstants *constants = &m->constants[block];
     const char *name = m->body->blocks[block]->head.name;
-    const double volume = m->body->lattices[block].volume;
+    const double volume =
+        m->body->lattices[block].chunks ? m->body->lattices[block].volume : block_mean_volume(m->particles, block);
     if (constants->lengths) text_add(text, "%s: links are right in every direction;", name);
     for (int l = 0; l < constants->lengths; ++l)
       text_add(text, " %.4g %s long: EA %.4g %s, EI %.4g %s%s", constants->length[l], length,
                constants->of[l].axial * volume * volume, force, constants->of[l].bending * volume * volume, bending,
                l + 1 < constants->lengths ? ";" : "\n");
-    if (!constants->lengths && m->body->lattices[block].chunks) describe_mean(m, block, text);
+    if (!constants->lengths) describe_mean(m, block, text);
     if (m->damage && isfinite(m->damage->laws[block].tension_begin))
       describe_damage(&m->damage->laws[block], name, text);
   }

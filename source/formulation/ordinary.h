@@ -9,7 +9,8 @@
  * which is never negative, whatever bonds are broken: m is that of the family as it began, so that a break takes what a bond carries and leaves the
  * others as they are.
  *
- * Along a lattice, weights are multiplied such that its shear modulus is the same in all directions (ordinary_weights.c). */
+ * Weights are multiplied such that the shear modulus of a family is the same in all directions: along a lattice alike for all bonds of a vector
+ * (ordinary_weights.c), of families that are not complete bond by bond (ordinary_families.c). */
 #ifndef BRECCIA_FORMULATION_ORDINARY_H
 #define BRECCIA_FORMULATION_ORDINARY_H
 
@@ -69,7 +70,11 @@ struct Ordinary {
   const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   int dimensions;
-  double *factor;               /* [patterns] on the weights of bonds along lattices */
+  double *factor;  /* [patterns] on the weights of bonds along lattices */
+  float **surface; /* [slices] further factors [slot from the slice's first one][8], alike for both ends of a
+                                   bond; NULL: they are 1 */
+  float *surfaces; /* [surface_count] which lie here */
+  size_t surface_count;
   OrdinaryDilating *dilating;   /* [patterns] */
   OrdinaryResisting *resisting; /* [patterns] */
   double *inverse;              /* [places] d / m of the family as it began; 0 where there is no bond */
@@ -96,6 +101,8 @@ static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot,
 {
   Bond bond = family_bond(o->family, slice, slot, lane);
   if (slot < o->family->stored[slice]) bond.weight *= o->factor[family_pattern(o->family, slice, slot)];
+  if (o->surface && o->surface[slice])
+    bond.weight *= (double)o->surface[slice][(slot - o->family->first[slice]) * SLICE + lane];
   return bond;
 }
 
@@ -153,6 +160,10 @@ Across ordinary_coupling(Space space, const Material *material);
 /** Adds to the factors of the patterns of a block what makes its lattice isotropic; leaves them where that would all but take bonds away
  *  (ordinary_weights.c). */
 void ordinary_balance(const Ordinary *o, int block);
+/** Finds the factors of bonds of families that are not complete (ordinary_families.c). */
+int ordinary_balance_families(Ordinary *o, Error *error);
+/** Young's modulus that the families of a block show in uniform tension along an axis, over that of its material. */
+double ordinary_body_young(const void *formulation, int block, int axis);
 /** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */
 double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
 

@@ -42,6 +42,8 @@ LANES_INLINE Four four_bonds(const Ordinary *o, const EnergyLimit *limit, int64_
       four.most[lane] = 2 * limit->half / limit->of->value(fmin(1, bond.length / f->horizon), bond.length);
     }
   }
+  if (o->surface && o->surface[slice])
+    four.most = four.most / lanes_widen(o->surface[slice] + (slot - f->first[slice]) * SLICE + LANES * half);
   const Lanes base = lanes_load(o->base + place) * four.length;
   const Lanes stiffness = lanes_load(o->shear + place);
   Lanes elastic = four.elongation;

@@ -43,6 +43,8 @@ LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t 
     h.weight = at_neighbours(&h, p->volume);
     if (f->scale) h.weight *= lanes_load(f->scale + first);
   }
+  if (o->surface && o->surface[slice])
+    h.weight *= lanes_widen(o->surface[slice] + (slot - f->first[slice]) * SLICE + LANES * half);
   h.weight = lanes_where(h.intact, h.weight);
   for (int k = 0; k < 3; ++k) {
     const Lanes eta = at_neighbours(&h, at[k]) - lanes_load(at[k] + here);

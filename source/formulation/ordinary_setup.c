@@ -19,8 +19,9 @@ static const Field ordinary_fields[] = {
      .offset = offsetof(OrdinarySpec, weights),
      .standard = "isotropic",
      .meaning =
-         "isotropic: bonds along a lattice count more or less by their direction, such that it shows its shear modulus "
-         "in all directions; plain: as in most codes, 16 % off along the axes of a cubic lattice at 3.015 spacings",
+         "isotropic: bonds count more or less by their direction, such that lattices, families at surfaces and of "
+         "particles from files show their moduli in all directions; plain: as in most codes, 16 % off along the axes "
+         "of a cubic lattice at 3.015 spacings, and far too stiff in thin parts",
      .words = (const char *const[]){"isotropic", "plain", NULL}},
 };
 const Section ordinary_section = {.name = "ordinary",
@@ -150,6 +151,8 @@ void ordinary_destroy(void *formulation)
   if (!o) return;
   ordinary_flow_destroy(o);
   free(o->factor);
+  free(o->surface);
+  free(o->surfaces);
   free(o->dilating);
   free(o->resisting);
   double **const arrays[] = {&o->inverse, &o->left,  &o->volumetric, &o->shear, &o->share, &o->dilatation,
@@ -206,6 +209,10 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
   for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
     ordinary_balance(o, block);
+  if (!strcmp(spec->weights, "isotropic") && ordinary_balance_families(o, error)) {
+    ordinary_destroy(o);
+    return NULL;
+  }
   if (create_rows(o, error) || ordinary_flow_create(o, parts->material_count, error)) {
     ordinary_destroy(o);
     return NULL;
@@ -229,34 +236,84 @@ FormerBonds ordinary_former_bonds(const void *formulation)
   return (FormerBonds){.share = 1, .alike = false};
 }
 
+/** Says what an endless lattice of a block shows. */
+static void describe_lattice(const Ordinary *o, int block, Text *text)
+{
+  static const double strains[6][6] = {{1, -1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0, 1, -1, 0, 0, 0},
+                                       {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}};
+  double least = INFINITY, largest = 0, light = INFINITY, heavy = 0;
+  for (int k = 0; k < (o->dimensions == 2 ? 2 : 6); ++k) {
+    const double shear = ordinary_lattice_shear(o, block, strains[k]);
+    least = fmin(least, shear);
+    largest = fmax(largest, shear);
+  }
+  for (int p = o->family->pattern_begin[block]; p < o->family->pattern_begin[block + 1]; ++p) {
+    light = fmin(light, o->factor[p]);
+    heavy = fmax(heavy, o->factor[p]);
+  }
+  const char *name = o->body->blocks[block]->head.name;
+  if (heavy > 1 + 1e-9)
+    text_add(text,
+             "%s: away from its surfaces the lattice shows the wanted moduli in all directions, for which its bonds "
+             "count by factors of %.2f to %.2f\n",
+             name, light, heavy);
+  else
+    text_add(
+        text,
+        "%s: away from its surfaces the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted shear "
+        "modulus\n",
+        name, least, largest);
+}
+
+/** Sizes of a block between its outermost particles, in `size`, and the longest. */
+static double block_sizes(const Ordinary *o, int block, double size[3])
+{
+  const Particles *p = o->particles;
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    double low = INFINITY, high = -INFINITY;
+    for (int64_t place = 0; place < p->places; ++place) {
+      if (p->block[place / SLICE] != block || p->number[place] < 0) continue;
+      low = fmin(low, p->position[k][place]);
+      high = fmax(high, p->position[k][place]);
+    }
+    size[k] = high - low;
+    longest = fmax(longest, size[k]);
+  }
+  return longest;
+}
+
+/** Says what the families of a block show in tension, and where that is furthest from what is asked: along axes that are not much shorter than the
+ *  longest one, as thin parts are stretched and bent along themselves. */
+static void describe_tension(const Ordinary *o, int block, Text *text)
+{
+  const double most = 0.03, not_short = 0.5;
+  double shown[3], size[3], furthest = 0;
+  const double longest = block_sizes(o, block, size);
+  int at = 0;
+  text_add(text, "%s: stretched evenly, all families of the body together show", o->body->blocks[block]->head.name);
+  for (int axis = 0; axis < o->dimensions; ++axis) {
+    shown[axis] = ordinary_body_young(o, block, axis);
+    text_add(text, "%s %.3f", axis ? "," : "", shown[axis]);
+    if (!(fabs(shown[axis] - 1) > furthest) || size[axis] < not_short * longest) continue;
+    furthest = fabs(shown[axis] - 1);
+    at = axis;
+  }
+  text_add(text, " of the wanted Young's modulus along %s", o->dimensions == 3 ? "x, y, z" : "x, y");
+  if (furthest > most)
+    text_add(text, ": tension along %c finds a body %.0f %% %s than asked; take more rows of particles across",
+             "xyz"[at], 100 * furthest, shown[at] > 1 ? "stiffer" : "softer");
+  text_add(text, "\n");
+}
+
 void ordinary_describe(const void *formulation, const Units *units, Text *text)
 {
   (void)units;
   const Ordinary *o = formulation;
-  static const double strains[6][6] = {{1, -1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0, 1, -1, 0, 0, 0},
-                                       {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}};
   for (int block = 0; block < o->body->block_count; ++block) {
-    if (!o->body->lattices[block].chunks || block_is_foreign(o->foreign, o->particles, block)) continue;
-    double least = INFINITY, largest = 0, light = INFINITY, heavy = 0;
-    for (int k = 0; k < (o->dimensions == 2 ? 2 : 6); ++k) {
-      const double shear = ordinary_lattice_shear(o, block, strains[k]);
-      least = fmin(least, shear);
-      largest = fmax(largest, shear);
-    }
-    for (int p = o->family->pattern_begin[block]; p < o->family->pattern_begin[block + 1]; ++p) {
-      light = fmin(light, o->factor[p]);
-      heavy = fmax(heavy, o->factor[p]);
-    }
-    const char *name = o->body->blocks[block]->head.name;
-    if (heavy > 1 + 1e-9)
-      text_add(
-          text,
-          "%s: the lattice shows the wanted moduli in all directions, for which its bonds count by factors of %.2f "
-          "to %.2f\n",
-          name, light, heavy);
-    else
-      text_add(text, "%s: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted shear modulus\n",
-               name, least, largest);
+    if (block_is_foreign(o->foreign, o->particles, block)) continue;
+    if (o->body->lattices[block].chunks) describe_lattice(o, block, text);
+    describe_tension(o, block, text);
   }
 }
 
@@ -341,5 +398,6 @@ size_t ordinary_bytes(const void *formulation)
          2 * (size_t)o->particles->slices +
          (o->by_length ? (size_t)o->family->stored_slots * SLICE * sizeof *o->by_length : 0) +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
+         (o->surface ? (size_t)o->particles->slices * sizeof *o->surface : 0) + o->surface_count * sizeof *o->surfaces +
          ordinary_flow_bytes(o);
 }

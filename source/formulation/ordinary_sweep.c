@@ -26,6 +26,13 @@ LANES_INLINE Lanes series_of(const double terms[STRETCH_TERMS], Lanes d, Lanes s
   return d * (pair[0] + square * (pair[1] + square * pair[2]));
 }
 
+/** Multiplies half a slot by the factors of the bonds of a slice; NULL: they are 1. */
+LANES_INLINE Lanes by_surface(const Ordinary *o, const float *surface, int64_t slice, int64_t slot, int half,
+                              Lanes lanes)
+{
+  return surface ? lanes * lanes_widen(surface + (slot - o->family->first[slice]) * SLICE + LANES * half) : lanes;
+}
+
 /* ---- dilatation ---- */
 
 typedef struct Dilated {
@@ -41,7 +48,7 @@ LANES_INLINE Lanes stretch_of(Lanes d, StretchRange range)
 }
 
 LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
-                                 StretchRange range, const Lanes own[3], Dilated *sum)
+                                 const float *surface, StretchRange range, const Lanes own[3], Dilated *sum)
 {
   const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryDilating *row = &o->dilating[pattern];
@@ -49,28 +56,31 @@ LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slice, int64_t slot,
   if (gaps) d = lanes_intact(o->family->intact[slot], half, d);
   if (range == RANGE_SERIES) {
     const Lanes square = d * d;
-    sum->sum += series_of(row->series, d, square);
+    sum->sum += by_surface(o, surface, slice, slot, half, series_of(row->series, d, square));
     sum->within = lanes_within(sum->within, d, lanes_set(row->limit));
     return;
   }
   const Pattern *bond = &o->family->patterns[pattern];
   d *= -lanes_set(bond->by_square);
   sum->largest = lanes_greatest(sum->largest, d * d);
-  sum->sum += lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range);
+  sum->sum += by_surface(o, surface, slice, slot, half,
+                         lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range));
 }
 
-LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
-                                const StretchHere *here, StretchWalk *walk, Dilated *sum)
+LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+                                const float *surface, StretchRange range, const StretchHere *here, StretchWalk *walk,
+                                Dilated *sum)
 {
   const int64_t at = walk->at;
   const StretchShown there = stretch_next(walk);
   const StretchEnds ends = stretch_ends(o->family, o->by_length, &there, at, o->family->intact[slot], half, gaps, here);
   sum->largest = lanes_greatest(sum->largest, ends.d * ends.d);
-  sum->sum += ends.weight * stretch_of(ends.d, range) * ends.square;
+  sum->sum += by_surface(o, surface, slice, slot, half, ends.weight) * stretch_of(ends.d, range) * ends.square;
 }
 
 /** Sums of a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
+LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool gaps, const float *surface,
+                                       StretchRange range)
 {
   const Family *f = o->family;
   Dilated sum[HALVES];
@@ -81,12 +91,13 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
     for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + slice * SLICE + LANES * half);
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-    for (int half = 0; half < HALVES; ++half) dilate_lattice(o, slice, slot, half, gaps, range, own[half], &sum[half]);
+    for (int half = 0; half < HALVES; ++half)
+      dilate_lattice(o, slice, slot, half, gaps, surface, range, own[half], &sum[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere at = stretch_here(o->particles, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      dilate_stored(o, slot, half, gaps, range, &at, &walk, &sum[half]);
+      dilate_stored(o, slice, slot, half, gaps, surface, range, &at, &walk, &sum[half]);
   }
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
@@ -97,11 +108,22 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
   return stretch_range_after(range, most);
 }
 
-LANES_INLINE StretchRange dilate_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
+LANES_INLINE StretchRange dilate_way(const Ordinary *o, int64_t slice, bool gaps, const float *surface,
+                                     StretchRange range)
 {
-  if (range == RANGE_SERIES) return dilate_slice(o, slice, gaps, RANGE_SERIES);
-  if (range == RANGE_NEWTON) return dilate_slice(o, slice, gaps, RANGE_NEWTON);
-  return dilate_slice(o, slice, gaps, RANGE_ANY);
+  if (range == RANGE_SERIES) return dilate_slice(o, slice, gaps, surface, RANGE_SERIES);
+  if (range == RANGE_NEWTON) return dilate_slice(o, slice, gaps, surface, RANGE_NEWTON);
+  return dilate_slice(o, slice, gaps, surface, RANGE_ANY);
+}
+
+/** Sums of a slice by one way, with what it has of gaps and factors known when this is compiled. */
+static StretchRange dilate_any(const Ordinary *o, int64_t slice, StretchRange range)
+{
+  const float *surface = o->surface ? o->surface[slice] : NULL;
+  if (surface && o->gaps[slice]) return dilate_way(o, slice, true, surface, range);
+  if (surface) return dilate_way(o, slice, false, surface, range);
+  if (o->gaps[slice]) return dilate_way(o, slice, true, NULL, range);
+  return dilate_way(o, slice, false, NULL, range);
 }
 
 static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
@@ -113,7 +135,7 @@ static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
     StretchRange range = (StretchRange)o->range[slice], next = range;
     for (int turn = 0; turn < 3; ++turn) {
       range = next;
-      next = o->gaps[slice] ? dilate_way(o, slice, true, range) : dilate_way(o, slice, false, range);
+      next = dilate_any(o, slice, range);
       if (next == range) break;
     }
     o->range[slice] = (uint8_t)range;
@@ -149,7 +171,8 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
 
 /** With A = a_i + a_j and C = b_i + b_j - A the force of a bond is w (A + C g) y: e / |y| is g, and |xi| / |y| is 1 - g. */
 LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
-                                 StretchRange range, const Lanes own[3], Lanes base, Lanes slope, Lanes force[3])
+                                 const float *surface, StretchRange range, const Lanes own[3], Lanes base, Lanes slope,
+                                 Lanes force[3])
 {
   const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryResisting *row = &o->resisting[pattern];
@@ -162,13 +185,14 @@ LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slice, int64_t slot,
     g = series_of(row->series, d, d * d);
   else
     g = weight * shortening(-lanes_set(o->family->patterns[pattern].by_square) * d, range);
-  Lanes pull = weight * base + slope * g;
+  Lanes pull = by_surface(o, surface, slice, slot, half, weight * base + slope * g);
   if (gaps) pull = lanes_intact(o->family->intact[slot], half, pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * twice[k];
 }
 
-LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
-                                const StretchHere *here, Lanes base, Lanes slope, StretchWalk *walk, Lanes force[3])
+LANES_INLINE void resist_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+                                const float *surface, StretchRange range, const StretchHere *here, Lanes base,
+                                Lanes slope, StretchWalk *walk, Lanes force[3])
 {
   const Family *f = o->family;
   const int64_t at = walk->at;
@@ -179,12 +203,12 @@ LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int half, bool 
   family_fetch_ahead(f, at, o->answer, 2);
   base += answer[0];
   slope += answer[1];
-  Lanes pull = ends.weight * (base + slope * shortening(ends.d, range));
+  Lanes pull = by_surface(o, surface, slice, slot, half, ends.weight) * (base + slope * shortening(ends.d, range));
   if (gaps) pull = lanes_intact(f->intact[slot], half, pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * ends.y[k];
 }
 
-LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
+LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, const float *surface, StretchRange range)
 {
   const Family *f = o->family;
   Lanes own[HALVES][3], force[HALVES][3] = {{{0}}}, base[HALVES], slope[HALVES];
@@ -196,36 +220,43 @@ LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, Stre
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      resist_lattice(o, slice, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
+      resist_lattice(o, slice, slot, half, gaps, surface, range, own[half], base[half], slope[half], force[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere here = stretch_here(o->particles, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      resist_stored(o, slot, half, gaps, range, &here, base[half], slope[half], &walk, force[half]);
+      resist_stored(o, slice, slot, half, gaps, surface, range, &here, base[half], slope[half], &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
-LANES_INLINE void resist_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
+LANES_INLINE void resist_way(const Ordinary *o, int64_t slice, bool gaps, const float *surface)
 {
+  const StretchRange range = (StretchRange)o->range[slice];
   if (range == RANGE_SERIES)
-    resist_slice(o, slice, gaps, RANGE_SERIES);
+    resist_slice(o, slice, gaps, surface, RANGE_SERIES);
   else if (range == RANGE_NEWTON)
-    resist_slice(o, slice, gaps, RANGE_NEWTON);
+    resist_slice(o, slice, gaps, surface, RANGE_NEWTON);
   else
-    resist_slice(o, slice, gaps, RANGE_ANY);
+    resist_slice(o, slice, gaps, surface, RANGE_ANY);
 }
 
 static int64_t resist(const Ordinary *ordinary, const Sweep *sweep)
 {
   const Ordinary local = *ordinary, *o = &local; /* so that stores are seen not to change it */
   const int64_t last = sweep->last;
-  for (int64_t slice = sweep->first; slice < last; ++slice)
-    if (o->gaps[slice])
-      resist_way(o, slice, true, (StretchRange)o->range[slice]);
+  for (int64_t slice = sweep->first; slice < last; ++slice) {
+    const float *surface = o->surface ? o->surface[slice] : NULL;
+    if (surface && o->gaps[slice])
+      resist_way(o, slice, true, surface);
+    else if (surface)
+      resist_way(o, slice, false, surface);
+    else if (o->gaps[slice])
+      resist_way(o, slice, true, NULL);
     else
-      resist_way(o, slice, false, (StretchRange)o->range[slice]);
+      resist_way(o, slice, false, NULL);
+  }
   return -1;
 }
 

@@ -573,7 +573,9 @@ static void check_slender(breccia_model *model, const Region *region)
   if (e.size[axis] < slender * next) return;
   for (int block = 0; block < body->block_count; ++block) {
     const double shown = region->type->shown_young(region->formulation, block, axis);
-    if (!(fabs(shown - 1) > most) || body->lattices[block].type->turns < body->dimensions) continue;
+    const LatticeType *lattice = body->lattices[block].type;
+    if (!(fabs(shown - 1) > most) || (lattice && body->lattices[block].chunks && lattice->turns < body->dimensions))
+      continue;
     plausibility_say(model, region->node,
                      "calibration: block '%s' is part of a body that is slender along %c, where its bonds show %.3f of "
                      "Young's modulus: a beam stretches and bends by %.0f %% too %s; 'calibration: uniaxial' makes the "

@@ -369,13 +369,13 @@ static void check_tells_the_shear_modulus_of_the_lattice(void **state)
         light = fmin(light, o->factor[k]);
         heavy = larger_of(heavy, o->factor[k]);
       }
-      char *wanted = plain
-                         ? text_format("b: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted "
-                                       "shear modulus\n",
-                                       least, largest)
-                         : text_format("b: the lattice shows the wanted moduli in all directions, for which its bonds "
-                                       "count by factors of %.2f to %.2f\n",
-                                       light, heavy);
+      char *wanted =
+          plain ? text_format("b: away from its surfaces the lattice shows the wanted bulk modulus, and %.3f to "
+                              "%.3f of the wanted shear modulus\n",
+                              least, largest)
+                : text_format("b: away from its surfaces the lattice shows the wanted moduli in all directions, "
+                              "for which its bonds count by factors of %.2f to %.2f\n",
+                              light, heavy);
       assert_true(plain ? largest - least > 0.01 : largest - least < 1e-6 && heavy > 1.01 && light < 0.99);
       if (!strstr(breccia_model_overview(m), wanted)) fail_msg("no '%s' in: %s", wanted, breccia_model_overview(m));
       free(wanted);

@@ -1,0 +1,16 @@
+/* Families of particles from files that count as inside their block: those over which stiffnesses are calibrated. */
+#ifndef BRECCIA_FORMULATION_WHOLE_FAMILY_H
+#define BRECCIA_FORMULATION_WHOLE_FAMILY_H
+
+#include "family/family.h"
+
+/** Volume from which a particle of a file and its neighbours count as a family inside the block: 95 % of the horizon's, or of that of the largest family,
+ *  if that is less.
+ *  @param[in] least  share of the horizon that the largest family must fill
+ *  @return infinite if it does not */
+double whole_family_volume(const Body *body, const Family *family, int block, double least);
+
+/** Returns true if a place stands in a block and its family has at least that volume. */
+bool whole_family_at(const Family *family, int block, int64_t place, double volume);
+
+#endif

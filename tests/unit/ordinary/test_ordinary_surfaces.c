@@ -1,0 +1,201 @@
+/* Ordinary bars and strips of few rows, from boxes and from files, against Hooke's closed forms: families at surfaces and of scattered rows. */
+#include "ordinary_body.h"
+
+#include <unistd.h>
+
+#define FILE_NAME "test_ordinary_surfaces.csv"
+
+static const double young = 150, traction = 1e-3;
+
+/** Mean displacement along a direction of particles whose distance along it from the origin lies between two bounds. */
+static double mean_moved(const breccia_model *m, const double along[2], double low, double high, double *middle)
+{
+  const Particles *p = m->domain.particles;
+  double sum = 0, count = 0, distance = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double x = along[0] * p->position[0][i] + along[1] * p->position[1][i];
+    if (x < low || x > high || body_outside(&m->domain.body, n)) continue;
+    sum += along[0] * p->displacement[0][i] + along[1] * p->displacement[1][i];
+    distance += x;
+    ++count;
+  }
+  assert_true(count > 0);
+  *middle = distance / count;
+  return sum / count;
+}
+
+/** Strain along a direction between a third and two thirds of a length. */
+static double strain_of(const breccia_model *m, const double along[2], double length)
+{
+  double from, to;
+  const double near = mean_moved(m, along, 0.3 * length, 0.4 * length, &from),
+               far = mean_moved(m, along, 0.6 * length, 0.7 * length, &to);
+  return (far - near) / (to - from);
+}
+
+/** A bar of so many rows, five times as long, pulled at its end and held across at the other. */
+static breccia_model *pulled(const char *space, int rows, double poisson, const char *words)
+{
+  const bool solid = !strcmp(space, "3-D");
+  char *shape = solid ? text_format("spacing: 1, shape: {box: {particles: [%d, %d, %d]}}", 5 * rows, rows, rows)
+                      : text_format("lattice: square, thickness: 0.3, spacing: 1, shape: {box: {particles: [%d, %d]}}",
+                                    5 * rows, rows);
+  breccia_model *m = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: %g, Poisson ratio: %g}}\n"
+      "peridynamics: {formulation: ordinary, space: %s%s}\nbody: {b: {material: m, %s}}\n"
+      "loads:\n  - {on: {face: x-}, support: {held: across}}\n  - {on: {nearest: [0, 0%s]}, displacement: [free, "
+      "0%s]}\n"
+      "%s  - {on: {face: x+, layers: 2}, traction: [%g, 0%s]}\nsolve: {static: {increments: 1}}\n",
+      young, poisson, space, words, shape, solid ? ", 0" : "", solid ? ", 0" : "",
+      solid ? "  - {on: {nearest: [0, 100, 0]}, displacement: [free, free, 0]}\n" : "", traction, solid ? ", 0" : "");
+  step_surely(m, 1);
+  free(shape);
+  return m;
+}
+
+/** Families at surfaces lack bonds: with weights of the lattice alone the bars would be 4 to 57 % too stiff. */
+static void bars_of_few_rows_are_as_long_as_hooke_says(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *space;
+    int rows;
+    double poisson;
+  } cases[] = {{"3-D", 4, 0.25},         {"3-D", 4, 0.4},          {"3-D", 6, 0.1},          {"plane stress", 3, 0.25},
+               {"plane stress", 4, 0.4}, {"plane stress", 8, 0.2}, {"plane strain", 4, 0.1}, {"plane strain", 6, 0.4}};
+  const double along[2] = {1, 0};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = pulled(cases[k].space, cases[k].rows, cases[k].poisson, "");
+    const double modulus =
+        strcmp(cases[k].space, "plane strain") ? young : young / (1 - cases[k].poisson * cases[k].poisson);
+    const double found = strain_of(m, along, 5 * cases[k].rows) * modulus / traction;
+    print_message("%s, %d rows, Poisson ratio %g: %.3f\n", cases[k].space, cases[k].rows, cases[k].poisson, found);
+    if (fabs(found - 1) > 0.02) fail_msg("%s, %d rows: %g of the strain", cases[k].space, cases[k].rows, found);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Where too few rows leave a body stiffer, `check` tells by how much, and the body is so. */
+static void check_tells_how_stiff_a_thin_body_is(void **state)
+{
+  (void)state;
+  static const char *const words[] = {"", ", lattice weights: plain"};
+  const double along[2] = {1, 0};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = pulled("3-D", 3, 0.25, words[k]);
+    const double stiffness = traction / young / strain_of(m, along, 15);
+    const char *told = strstr(breccia_model_overview(m), "all families of the body together show ");
+    double x;
+    assert_non_null(told);
+    assert_int_equal(sscanf(told, "all families of the body together show %lf,", &x), 1);
+    print_message("told %g, found %g\n", x, stiffness);
+    assert_true(stiffness > 1.03);
+    assert_near(x / stiffness, 1, 0.05); /* ends are of the body, too */
+    assert_non_null(strstr(told, "stiffer than asked"));
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Half of a bar beyond a plane of symmetry along it, and the whole: families of the images are those of the bar. */
+static void halves_of_bars_move_as_whole_ones(void **state)
+{
+  (void)state;
+  static const char *const loads[] = {"  - {on: {nearest: [0.5, 0.5, 0.5]}, displacement: [free, 0, 0]}\n"
+                                      "  - {on: {nearest: [0.5, 3.5, 0.5]}, displacement: [free, free, 0]}\n",
+                                      "  - {on: {face: y-}, support: {held: across}}\n  - {on: {nearest: [0.5, 0.5, "
+                                      "0.5]}, displacement: [free, free, 0]}\n"};
+  breccia_model *models[2];
+  for (int half = 0; half < 2; ++half) {
+    models[half] = model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.3}}\n"
+                            "peridynamics: {formulation: ordinary}\n"
+                            "body: {b: {material: m, spacing: 1, shape: {box: {from: [0, %d, 0], to: [10, 4, 3]}}}}\n"
+                            "loads:\n  - {on: {face: x-}, support: {held: across}}\n%s"
+                            "  - {on: {face: x+}, traction: [1e-3, 0, 0]}\n"
+                            "solve: {static: {increments: 1, residual: 1e-10}}\n",
+                            half ? 0 : -4, loads[half]);
+    step_surely(models[half], 1);
+  }
+  const Particles *whole = models[0]->domain.particles, *part = models[1]->domain.particles;
+  int count = 0;
+  for (int32_t n = 0; n < part->count; ++n) {
+    const int32_t i = part->place_of[n];
+    if (body_outside(&models[1]->domain.body, n)) continue;
+    const double at[3] = {part->position[0][i], part->position[1][i], part->position[2][i]};
+    const double other = whole->displacement[0][particles_nearest(whole, at)];
+    ++count;
+    if (at[0] > 2) assert_near(part->displacement[0][i] / other, 1, 1e-6);
+  }
+  assert_int_equal(count, 10 * 4 * 3);
+  for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
+}
+
+/** Writes a strip of rows, every second one shifted by half of a spacing, turned by an angle. */
+static void write_strip(int columns, int rows, double turn)
+{
+  FILE *table = fopen(FILE_NAME, "w");
+  assert_non_null(table);
+  fputs("x,y,volume\n", table);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double x = column + 0.5 + (row % 2 ? 0.25 : -0.25), y = row + 0.5;
+      fprintf(table, "%.12g,%.12g,0.3\n", cos(turn) * x - sin(turn) * y, sin(turn) * x + cos(turn) * y);
+    }
+  fclose(table);
+}
+
+/** Stretches a strip from a file evenly along itself, free across, at its ends. */
+static double stretched_strip(double turn, double poisson)
+{
+  enum { COLUMNS = 40, ROWS = 8 };
+  const double strain = 1e-5, c = cos(turn), s = sin(turn);
+  write_strip(COLUMNS, ROWS, turn);
+  breccia_model *m = model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: %g}}\n"
+                              "peridynamics: {formulation: ordinary, space: plane stress}\n"
+                              "body: {b: {material: m, lattice: square, spacing: 1, thickness: 0.3, file: " FILE_NAME
+                              "}}\nsolve: {explicit: {steps: 1}}\n",
+                              poisson);
+  unlink(FILE_NAME);
+  const Particles *p = m->domain.particles;
+  double energy = 0, volume = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double x = c * p->position[0][i] + s * p->position[1][i], y = -s * p->position[0][i] + c * p->position[1][i],
+                 u = strain * x, v = -poisson * strain * y;
+    p->displacement[0][i] = c * u - s * v;
+    p->displacement[1][i] = s * u + c * v;
+  }
+  compute_forces(m);
+  for (int32_t n = 0; n < p->count; ++n) {
+    StoredEnergy stored;
+    ordinary_stored_energy(ordinary_of(m), p->place_of[n], 0, &stored);
+    energy += stored.stored;
+    volume += p->volume[p->place_of[n]];
+  }
+  breccia_model_destroy(&m);
+  return energy / (0.5 * young * strain * strain * volume);
+}
+
+/** Rows that are shifted make families that are unlike in all directions; 13 to 25 % too stiff with plain weights. */
+static void shifted_rows_from_files_have_the_energy_of_hooke(void **state)
+{
+  (void)state;
+  const double poisson[] = {0.1, 1. / 3};
+  for (int k = 0; k < 2; ++k) {
+    const double straight = stretched_strip(0, poisson[k]), turned = stretched_strip(0.64, poisson[k]);
+    print_message("Poisson ratio %g: %.4f of the energy, turned %.4f\n", poisson[k], straight, turned);
+    assert_near(straight, 1, 0.02);
+    assert_near(turned, straight, 1e-6);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bars_of_few_rows_are_as_long_as_hooke_says),
+      cmocka_unit_test(check_tells_how_stiff_a_thin_body_is),
+      cmocka_unit_test(halves_of_bars_move_as_whole_ones),
+      cmocka_unit_test(shifted_rows_from_files_have_the_energy_of_hooke),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
