@@ -24,7 +24,7 @@ static const Field hybrid_fields[] = {
      .meaning =
          "variational: the stress of a bond acts on all particles that its strain comes from, so that momenta and "
          "energy are kept; pairwise: on its two ends only, as published, with a stiffness that is not symmetric: "
-         "needs stiffness damping where it moves",
+         "needs stiffness damping where it moves, and no bond of it breaks in motion",
      .words = (const char *const[]){"variational", "pairwise", NULL}},
     {.key = "strain",
      .kind = FIELD_CHOICE,

@@ -276,6 +276,8 @@ int ordinary_balance_families(Ordinary *o, Error *error)
   const int64_t places = o->particles->places;
   const Family *f = o->family;
   FamilyBalance b = {.o = o};
+  /* Images lack the neighbours in blocks of other formulations that their originals have: the stiffness would not be symmetric. */
+  if (o->foreign && o->body->margin_of) return BRECCIA_OK;
   families_list_terms(&b);
   b.wish = memory_zeroed((size_t)places, sizeof *b.wish, "bond constants", error);
   b.of_patterns = memory_zeroed((size_t)f->pattern_count * TERM_ROOM + 1, sizeof(double), "bond constants", error);

@@ -195,6 +195,11 @@ static int check(Solver *run, const void *section, Error *error)
     return node_error(run->reader->document, section_node(spec, "time step"), error,
                       "time step: %.3g steps are too many", steps);
   const char *flutters = domain_flutters(run->domain);
+  if (flutters && run->domain->failure.criterion)
+    return node_error(run->reader->document, spec->head.node, error,
+                      "implicit: %s, and more so beside a crack: cracks stop where they should run on; expected 'form: "
+                      "variational', or a deck in which no bond breaks",
+                      flutters);
   if (flutters && !(spec->damping.stiffness > 0))
     return node_error(run->reader->document, spec->head.node, error,
                       "implicit: %s: expected 'form: variational', 'stiffness damping' or 'Rayleigh damping'",

@@ -155,6 +155,11 @@ static int check_formulations(const Solver *run, const ExplicitSpec *spec, doubl
   const double share = run->domain->body.dimensions == 2 ? 0.01 : 0.05;
   double stable;
   if (!why) return BRECCIA_OK;
+  if (run->domain->failure.criterion)
+    return node_error(run->reader->document, spec->head.node, error,
+                      "explicit: %s, and more so beside a crack: cracks stop where they should run on; expected 'form: "
+                      "variational', or a deck in which no bond breaks",
+                      why);
   const int status = stable_step(run->domain, &stable, error);
   if (status || isinf(stable) || spec->damping.stiffness >= slack * share * stable) return status;
   return node_error(run->reader->document, spec->head.node, error,

@@ -60,12 +60,14 @@ typedef struct Exact {
   long double y[3], length, now, elongation, weight;
 } Exact;
 
-static Exact exact_bond(const Domain *d, int64_t slice, int64_t slot, int lane)
+/** @param[in] o  whose factors count, or NULL */
+static Exact exact_bond(const Domain *d, const Ordinary *o, int64_t slice, int64_t slot, int lane)
 {
   const Particles *p = d->particles;
   const int64_t place = slice * SLICE + lane;
   const Bond bond = family_bond(&d->family, slice, slot, lane);
-  Exact e = {.neighbour = bond.neighbour, .weight = (long double)bond.weight};
+  const double weight = o ? ordinary_bond(o, slice, slot, lane).weight : bond.weight;
+  Exact e = {.neighbour = bond.neighbour, .weight = (long double)weight};
   long double along = 0;
   for (int k = 0; k < 3; ++k) {
     const long double xi = (long double)p->position[k][bond.neighbour] - (long double)p->position[k][place],
@@ -89,7 +91,7 @@ static long double exact_dilatation(const Domain *d, const Ordinary *o, int64_t 
   long double sum = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
-    const Exact e = exact_bond(d, slice, slot, lane);
+    const Exact e = exact_bond(d, o, slice, slot, lane);
     sum += e.weight * e.length * e.elongation;
   }
   return (long double)o->inverse[place] * sum;
@@ -110,7 +112,7 @@ static void exact_force(const breccia_model *model, const long double *dilatatio
   for (int k = 0; k < 3; ++k) force[k] = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
-    const Exact e = exact_bond(d, slice, slot, lane);
+    const Exact e = exact_bond(d, o, slice, slot, lane);
     long double tension = (long double)c * e.elongation / e.length, most = (long double)c;
     if (o) {
       const int64_t j = e.neighbour;

@@ -356,6 +356,19 @@ static void free_bodies_keep_their_energy(void **state)
                                         "solve: {implicit: {end time: 1}}\n");
   assert_non_null(strstr(refusal, "expected 'form: variational', 'stiffness damping' or 'Rayleigh damping'"));
   free(refusal);
+  /* Bonds that break in motion are refused whatever the damping: of a plate with a crack 4 bonds broke where 313 do. */
+  static const char *const stages[] = {"explicit: {steps: 1, stiffness damping: 1e-2}",
+                                       "implicit: {end time: 1, stiffness damping: 1e-2}"};
+  for (int k = 0; k < 2; ++k) {
+    snprintf(deck, sizeof deck,
+             UNITS SOFT_SOLID "body: {b: {material: m, spacing: 1, shape: {box: {particles: [3, 3, 3]}}}}\n"
+                              "peridynamics: {formulation: hybrid, form: pairwise, horizon: 1.5 spacings}\n"
+                              "failure: {critical stretch: 0.01}\nsolve: {%s}\n",
+             stages[k]);
+    refusal = refusal_of(deck);
+    assert_non_null(strstr(refusal, "expected 'form: variational', or a deck in which no bond breaks"));
+    free(refusal);
+  }
   snprintf(deck, sizeof deck, words, "variational", steps, 0.0);
   breccia_model *m = model_of("%s", deck);
   step_surely(m, steps);
@@ -428,7 +441,7 @@ static void breaking_keeps_its_books(void **state)
  *  @param[in] layers  across the plane in space; 0: in the plane */
 static breccia_model *notched_pair(const char *law, const char *keys, int layers)
 {
-  const bool plane = !layers;
+  const bool plane = !layers, pairwise = strstr(keys, "pairwise"); /* of which no bond breaks in motion */
   char deep[16] = "";
   if (layers) snprintf(deep, sizeof deep, ", 0.%02d", layers);
   return model_of(
@@ -439,7 +452,7 @@ static breccia_model *notched_pair(const char *law, const char *keys, int layers
             "  b: {material: n, %s, shape: {box: {from: [0.005, 0.11%s], to: [0.095, 0.16%s]}}}\n"
             "cracks: [{cut: {%s}}]\n"
             "peridynamics: {formulation: hybrid, %s}\n"
-            "failure: {critical stretch: 2.05e-4, near grips: hold}\n"
+            "%s"
             "loads: [{on: {face: y+, layers: 2}, velocity: [free, 0.1], history: {ramp to: 20e-6}},\n"
             "        {on: {face: y-, layers: 2}, velocity: [free, -0.1], history: {ramp to: 20e-6}}]\n"
             "solve: {explicit: {end time: 4e-4%s}}\n",
@@ -447,7 +460,8 @@ static breccia_model *notched_pair(const char *law, const char *keys, int layers
       plane ? "lattice: square, spacing: 0.01, thickness: 0.1" : "spacing: 0.01", plane ? "" : ", 0", deep,
       plane ? "line: [[0, 0.07], [0.06, 0.07]]"
             : "polygon: [[-1, 0.07, -1], [0.06, 0.07, -1], [0.06, 0.07, 1], [-1, 0.07, 1]]",
-      keys, strstr(keys, "pairwise") ? ", stiffness damping: 1e-7" : "");
+      keys, pairwise ? "" : "failure: {critical stretch: 2.05e-4, near grips: hold}\n",
+      pairwise ? ", stiffness damping: 1e-7" : "");
 }
 
 /** The same numbers, but for roundings of what was summed. */
@@ -489,7 +503,7 @@ static void laws_of_hooke_need_no_rows(void **state)
       assert_int_equal(points_keep_tensors(&d->regions[0].points), n);
       assert_true(n || !d->regions[0].points.strain[0]);
       step_surely(both[n], cases[c].layers ? 200 : 300);
-      assert_true(d->broken_count > 20);
+      assert_true(d->broken_count > 20 || strstr(cases[c].keys, "pairwise"));
       assert_int_equal(domain_linearise(d, NULL), 0);
     }
     const Particles *p = both[0]->domain.particles, *q = both[1]->domain.particles;
