@@ -24,6 +24,7 @@ typedef struct LinkConstants {
   double length[MOST_LENGTHS];
   LinkStiffness of[MOST_LENGTHS];
   double gyration; /* square of the radius of gyration of a particle */
+  double crossed;  /* sum of axial stiffness w L^2 over a family inside */
 } LinkConstants;
 
 /** What sweeps read of links of a lattice pattern. */
@@ -102,8 +103,6 @@ const Material *micropolar_material(const Micropolar *m, int block);
 int micropolar_find_constants(Micropolar *m, int block, Error *error);
 /** Stiffness of a link: the mean of what both ends' blocks say to its length. */
 LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bond *bond);
-/** Integral of w L^2 over a whole family of scattered particles. */
-double micropolar_square_sum(const Micropolar *m);
 /** Adds what a user should know before a run. */
 void micropolar_describe(const void *formulation, const Units *units, Text *text);
 

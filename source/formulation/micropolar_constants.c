@@ -84,7 +84,8 @@ typedef struct FamilySums {
   double length[MOST_LENGTHS];
   Stiffness axial[MOST_LENGTHS], bending[MOST_LENGTHS]; /* by length */
   Stiffness all_axial, all_bending;
-  double lengths, inverse; /* sums of w L and w / L; 0: there is no link */
+  double lengths, inverse;                   /* sums of w L and w / L; 0: there is no link */
+  double squares[MOST_LENGTHS], all_squares; /* sums of w L^2 */
 } FamilySums;
 
 static void add_to_sums(const Bond *bond, double share, int dimensions, FamilySums *sums)
@@ -95,6 +96,9 @@ static void add_to_sums(const Bond *bond, double share, int dimensions, FamilySu
   if (l == sums->count && sums->count <= MOST_LENGTHS) ++sums->count;
   add_link(bond, share, dimensions, &sums->all_axial, &sums->all_bending);
   if (l < MOST_LENGTHS) add_link(bond, share, dimensions, &sums->axial[l], &sums->bending[l]);
+  const double square = share * bond->weight * bond->length * bond->length;
+  if (l < MOST_LENGTHS) sums->squares[l] += square;
+  sums->all_squares += square;
   sums->lengths += share * bond->weight * bond->length;
   sums->inverse += share * bond->weight / bond->length;
 }
@@ -184,26 +188,6 @@ static void fit_lengths(const FamilySums *sums, const Stiffness *target, double 
 }
 
 /* ---- right in the mean ---- */
-
-/** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
-static double influence_moment(const Micropolar *m, int power)
-{
-  enum { INTERVALS = 2000 };
-  double sum = 0;
-  for (int k = 0; k <= INTERVALS; ++k) {
-    const double q = fmax(1e-9, (double)k / INTERVALS),
-                 value = m->influence->value(q, q * m->family->horizon) * pow(q, power);
-    sum += value * (k == 0 || k == INTERVALS ? 1 : k % 2 ? 4 : 2);
-  }
-  return sum / (3.0 * INTERVALS);
-}
-
-double micropolar_square_sum(const Micropolar *m)
-{
-  const double pi = acos(-1), horizon = m->family->horizon;
-  if (m->body->dimensions == 3) return 4 * pi * pow(horizon, 5) * influence_moment(m, 4);
-  return 2 * pi * body_section(m->body) * pow(horizon, 4) * influence_moment(m, 3);
-}
 
 /** Uniform expansion costs no bending: its energy gives c. The trace of the stiffness is what all directions have in the mean: it gives d. */
 static LinkStiffness fit_mean(const Micropolar *m, const FamilySums *sums, double lambda, double mu)
@@ -308,6 +292,8 @@ int micropolar_find_constants(Micropolar *m, int block, Error *error)
   constants->any.twist = twist * constants->any.bending;
   for (int l = 0; l < constants->lengths; ++l) constants->of[l].twist = twist * constants->of[l].bending;
   constants->gyration = find_gyration(m, block);
+  constants->crossed = constants->lengths ? 0 : constants->any.axial * sums.all_squares;
+  for (int l = 0; l < constants->lengths; ++l) constants->crossed += constants->of[l].axial * sums.squares[l];
   return BRECCIA_OK;
 }
 

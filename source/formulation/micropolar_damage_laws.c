@@ -44,10 +44,10 @@ static double least_crossing(const Micropolar *m, int block)
   return least;
 }
 
-/** The mean over all planes of scattered particles, of which families are taken to be whole; what links spend across themselves is left out. */
+/** The mean over all planes of scattered particles, of the families by which links are calibrated; what links spend across themselves is left out. */
 static double mean_crossing(const Micropolar *m, int block)
 {
-  return m->constants[block].any.axial * micropolar_square_sum(m) * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
+  return m->constants[block].crossed * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
 }
 
 int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *link, Error *error)

@@ -312,31 +312,8 @@ static void cracks_take_the_fracture_energy_at_any_spacing(void **state)
   if (found < 0.998 || found > 1.3) fail_msg("square: %g of the fracture energy", found);
 }
 
-/** What stands for the families of scattered particles is what large ones of lattices come to. */
-static void families_of_scattered_particles_are_taken_as_whole(void **state)
-{
-  (void)state;
-  const struct {
-    const char *lattice, *particles, *space;
-  } cases[] = {{"square", "[17, 17]", "plane strain"}, {"cubic", "[9, 9, 9]", "3-D"}};
-  for (int c = 0; c < 2; ++c) {
-    const char *size = *cases[c].space == 'p' ? "thickness: 0.3," : "";
-    breccia_model *model =
-        model_of(UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e7, Poisson ratio: 0.2}}\n"
-                       "body: {b: {material: m, lattice: %s, spacing: 0.1, %s shape: {box: {particles: %s}}}}\n"
-                       "peridynamics: {formulation: micropolar, space: %s, horizon: %s spacings}\n"
-                       "solve: {explicit: {steps: 1}}\n",
-                 cases[c].lattice, size, cases[c].particles, cases[c].space, c ? "4.3" : "8.3");
-    const Family *f = &model->domain.family;
-    double sum = 0;
-    for (int k = 0; k < f->pattern_count; ++k) sum += f->patterns[k].weight * pow(f->patterns[k].length, 2);
-    assert_near(micropolar_square_sum(formulation_of(model)) / sum, 1, 0.05);
-    breccia_model_destroy(&model);
-  }
-}
-
-/** Links of scattered particles lose their force at the stretch at which those of a fine lattice do, whose sums come to
- * the same integrals: of a Poisson ratio of 1/4, which links without bending have. */
+/** Links of scattered particles lose their force at the stretch at which those of a fine lattice do: of a Poisson ratio of
+ * 1/4, which links without bending have. */
 static void scattered_links_end_where_those_of_a_fine_lattice_do(void **state)
 {
   (void)state;
@@ -496,7 +473,6 @@ int main(void)
       cmocka_unit_test(damage_stays_only_where_steps_come_out_well),
       cmocka_unit_test(what_was_tried_leaves_nothing_behind),
       cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
-      cmocka_unit_test(families_of_scattered_particles_are_taken_as_whole),
       cmocka_unit_test(scattered_links_end_where_those_of_a_fine_lattice_do),
       cmocka_unit_test(spacings_that_snap_back_are_refused),
       cmocka_unit_test(torn_bars_keep_their_books_and_bits),
