@@ -283,26 +283,28 @@ static double block_sizes(const Ordinary *o, int block, double size[3])
   return longest;
 }
 
-/** Says what the families of a block show in tension, and where that is furthest from what is asked: along axes that are not much shorter than the
- *  longest one, as thin parts are stretched and bent along themselves. */
+/** Says between which shares of Young's modulus the families of a block show it along the axes, and what is furthest from it: along axes that are not much
+ *  shorter than the longest one, as thin parts are stretched and bent along themselves. */
 static void describe_tension(const Ordinary *o, int block, Text *text)
 {
   const double most = 0.03, not_short = 0.5;
-  double shown[3], size[3], furthest = 0;
+  double size[3], furthest = 0, least = INFINITY, largest = 0;
   const double longest = block_sizes(o, block, size);
-  int at = 0;
-  text_add(text, "%s: stretched evenly, all families of the body together show", o->body->blocks[block]->head.name);
   for (int axis = 0; axis < o->dimensions; ++axis) {
-    shown[axis] = ordinary_body_young(o, block, axis);
-    text_add(text, "%s %.3f", axis ? "," : "", shown[axis]);
-    if (!(fabs(shown[axis] - 1) > furthest) || size[axis] < not_short * longest) continue;
-    furthest = fabs(shown[axis] - 1);
-    at = axis;
+    const double shown = ordinary_body_young(o, block, axis);
+    least = fmin(least, shown);
+    largest = fmax(largest, shown);
+    if (fabs(shown - 1) > fabs(furthest) && size[axis] >= not_short * longest) furthest = shown - 1;
   }
-  text_add(text, " of the wanted Young's modulus along %s", o->dimensions == 3 ? "x, y, z" : "x, y");
-  if (furthest > most)
-    text_add(text, ": tension along %c finds a body %.0f %% %s than asked; take more rows of particles across",
-             "xyz"[at], 100 * furthest, shown[at] > 1 ? "stiffer" : "softer");
+  text_add(
+      text,
+      "%s: stretched evenly, all families of the body together show %.3f to %.3f of the wanted Young's modulus along "
+      "its axes",
+      o->body->blocks[block]->head.name, least, largest);
+  if (fabs(furthest) > most)
+    text_add(text,
+             "; in tension along its length the body is %.0f %% %s than asked; take more rows of particles across",
+             100 * fabs(furthest), furthest > 0 ? "stiffer" : "softer");
   text_add(text, "\n");
 }
 

@@ -13,7 +13,7 @@ double whole_family_volume(const Body *body, const Family *family, int block, do
   for (int64_t place = 0; place < p->places; ++place)
     if (p->block[place / SLICE] == block && p->number[place] >= 0)
       largest = fmax(largest, p->volume[place] + family_volume(family, (int32_t)place));
-  return largest < least * full ? INFINITY : 0.95 * fmin(full, largest);
+  return largest < least * full ? INFINITY : WHOLE_FAMILY_SHARE * fmin(full, largest);
 }
 
 bool whole_family_at(const Family *family, int block, int64_t place, double volume)

@@ -23,7 +23,7 @@ static breccia_model *beam(const char *steel, double height, const char *bar, co
       threads,
       UNITS "materials:\n  concrete: {model: elastic, density: 2.4e-3, Young modulus: 3e4, Poisson ratio: 0.2}\n  %s\n"
             "body: {b: {material: concrete, lattice: square, spacing: 0.04, thickness: 0.2, shape: {box: {particles: "
-            "[100, 11]}}}}\n"
+            "[100, 11], first particle: [0, 0]}}}}\n"
             "peridynamics: {space: plane stress, formulation: ordinary, horizon: 2.015 spacings}\n"
             "bars: {tendon: {points: [[0, %g], [3.96, %g]], area: 1e-3, material: rod%s}}\n"
             "loads:\n  - {on: {nearest: [1.96, 0.2]}, displacement: [0, 0]}\n  - {on: {nearest: [2.0, 0.2]}, "
