@@ -88,8 +88,9 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns E_c / E, the energy of a bond at its limit over its present energy. At rest E exceeds E_c where an increment or
- *  a crack that runs has carried the bond beyond its limit; the difference is booked as shed. In motion returns 1. */
+/** Returns E_c / E, the energy of a bond at its limit over its present energy. At rest E exceeds E_c where an
+ *  increment or a crack that runs has carried the bond beyond its limit; the difference is booked as shed. In motion
+ *  returns 1. */
 static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment)
 {
   const Criterion *criterion = d->failure.criterion;

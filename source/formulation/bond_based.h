@@ -65,7 +65,8 @@ const Material *bond_material(const BondBased *b, int block);
 /** Finds out whether a slice has gaps. */
 void bond_note_gaps(BondBased *b, int64_t slice);
 
-/* Bonds of particles from a file are calibrated where families fill at least this share of the horizon: those of thin bodies are all at surfaces. */
+/* Bonds of particles from a file are calibrated where families fill at least this share of the horizon: those of thin
+ * bodies are all at surfaces. */
 #define LEAST_FILLED 0.95
 
 /** Finds the surface correction (bond_surface.c). */

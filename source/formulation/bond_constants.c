@@ -50,7 +50,8 @@ static void add_bond(const double xi[3], double length, double weight, double c[
     for (int j = 0; j < MANDEL; ++j) c[i][j] += 0.5 * weight * length * m[i] * m[j];
 }
 
-/** Mean over the families of particles from a file that are whole, so that surfaces do not count. NaN if there is none. */
+/** Mean over the families of particles from a file that are whole, so that surfaces do not count. NaN if there is
+ *  none. */
 static void cloud_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
 {
   const Family *f = b->family;
@@ -71,7 +72,8 @@ static void cloud_stiffness(const BondBased *b, int block, double c[MANDEL][MAND
     for (int j = 0; j < MANDEL; ++j) c[i][j] /= volume;
 }
 
-/** Stiffness of the infinite lattice of a block for c = 1, half the sum of w L n n n n; of particles from a file the mean of those inside. */
+/** Stiffness of the infinite lattice of a block for c = 1, half the sum of w L n n n n; of particles from a file the
+ *  mean of those inside. */
 static void inner_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
 {
   memset(c, 0, sizeof(double) * MANDEL * MANDEL);
@@ -118,7 +120,8 @@ static double inner_young(const BondBased *b, int block, const double n[3])
   return young_along(c, b->body->dimensions, n);
 }
 
-/** Modulus of the continuum in uniaxial stress within the body's space, as a multiple of Young's: nu = 1/4 in plane strain. */
+/** Modulus of the continuum in uniaxial stress within the body's space, as a multiple of Young's: nu = 1/4 in plane
+ *  strain. */
 static double continuum_young(const BondBased *b)
 {
   return b->space == SPACE_PLANE_STRAIN ? 16.0 / 15 : 1;

@@ -13,7 +13,7 @@ enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 200 };
 
 /* Increments of the pull, as a share of the strain at which the law begins to soften; the pull ends where the stress
  * has fallen to this share of the peak. Stresses across the pull vanish to this share of the peak. */
-static const double strength_increment = 0.02, strength_fallen = 0.9, strength_free = 1e-6;
+static const double strength_increment = 0.02, strength_fallen = 0.9, strength_side_tolerance = 1e-6;
 
 /** Bonds of a particle of an infinite lattice. Rows are the pull and the two directions across it. */
 typedef struct StrengthBonds {
@@ -23,7 +23,7 @@ typedef struct StrengthBonds {
   double *strain, *stress, *length, *committed, *trial;
 } StrengthBonds;
 
-static void strength_release(StrengthBonds *s)
+static void strength_free(StrengthBonds *s)
 {
   for (int k = 0; k < 3; ++k) free(s->share[k]);
   free(s->weight);
@@ -112,8 +112,9 @@ static void strength_commit(StrengthBonds *s)
   s->trial = held;
 }
 
-/** Lets the sides go: strains across by which no stress is left, in steps of the elastic stiffness across. */
-static bool strength_release_sides(StrengthBonds *s, int dimensions, double peak, double strain[3], double stress[3])
+/** Solves for the lateral strains at which the lateral stresses vanish, by steps with the elastic stiffness.
+ *  @return false if the law could not be integrated, or the steps do not converge */
+static bool strength_solve_sides(StrengthBonds *s, int dimensions, double peak, double strain[3], double stress[3])
 {
   double stiffness[3] = {0};
   for (int r = 1; r < dimensions; ++r)
@@ -124,7 +125,7 @@ static bool strength_release_sides(StrengthBonds *s, int dimensions, double peak
     double left = 0;
     if (!strength_try(s, strain, stress)) return false;
     for (int r = 1; r < dimensions; ++r) left = fmax(left, fabs(stress[r]));
-    if (left <= strength_free * peak) return true;
+    if (left <= strength_side_tolerance * peak) return true;
     for (int r = 1; r < dimensions; ++r) strain[r] -= stress[r] / stiffness[r];
   }
   return false;
@@ -147,7 +148,7 @@ static double strength_of_bond(const Material *m, double step)
     most = fmax(most, stress[0]);
     strength_commit(&one);
   }
-  strength_release(&one);
+  strength_free(&one);
   return most;
 }
 
@@ -165,10 +166,10 @@ double bond_uniaxial_strength(const void *formulation, int block, const double n
   bool going = strength_begin(&s, b, block, n) && bond > 0;
   for (int k = 1; going && k <= STRENGTH_STEPS; ++k) {
     strain[0] = k * step;
-    going = strength_release_sides(&s, b->body->dimensions, bond, strain, stress) && stress[0] > strength_fallen * most;
+    going = strength_solve_sides(&s, b->body->dimensions, bond, strain, stress) && stress[0] > strength_fallen * most;
     most = fmax(most, stress[0]);
     strength_commit(&s);
   }
-  strength_release(&s);
+  strength_free(&s);
   return most > 0 ? most / bond : NAN;
 }

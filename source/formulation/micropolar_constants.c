@@ -78,7 +78,8 @@ static double product(const Stiffness *a, const Stiffness *b)
 
 /* ---- families ---- */
 
-/** What the links of a family inside a block sum up to: of a lattice its own one, of particles from a file the mean of those that are inside. */
+/** What the links of a family inside a block sum up to: of a lattice its own one, of particles from a file the mean of
+ *  those that are inside. */
 typedef struct FamilySums {
   int count; /* of lengths; more than MOST_LENGTHS: links cannot be right in every direction */
   double length[MOST_LENGTHS];

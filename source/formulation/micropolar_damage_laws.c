@@ -44,7 +44,8 @@ static double least_crossing(const Micropolar *m, int block)
   return least;
 }
 
-/** The mean over all planes of scattered particles, of the families by which links are calibrated; what links spend across themselves is left out. */
+/** The mean over all planes of scattered particles, of the families by which links are calibrated; what links spend
+ *  across themselves is left out. */
 static double mean_crossing(const Micropolar *m, int block)
 {
   return m->constants[block].crossed * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));

@@ -9,8 +9,9 @@
  * which is never negative, whatever bonds are broken: m is that of the family as it began, so that a break takes what a bond carries and leaves the
  * others as they are.
  *
- * Weights are multiplied such that the shear modulus of a family is the same in all directions: along a lattice alike for all bonds of a vector
- * (ordinary_weights.c), of families that are not complete bond by bond (ordinary_families.c). */
+ * Weights are multiplied such that the shear modulus of a family is the same in all directions: along a lattice alike
+ * for all bonds of a vector (ordinary_weights.c), of families that are not complete bond by bond
+ * (ordinary_families.c). */
 #ifndef BRECCIA_FORMULATION_ORDINARY_H
 #define BRECCIA_FORMULATION_ORDINARY_H
 

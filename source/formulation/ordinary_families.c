@@ -1,18 +1,25 @@
-/* Weights with which families that are not complete are isotropic: near surfaces, notches and other blocks, and of particles from files.
+/* Bond factors with which incomplete families are isotropic: near surfaces, notches and other blocks, and of particles
+ * from files.
  *
- * A family shows its material's moduli in every uniform strain if S = sum w |xi|^2 n n n n / m over its bonds is isotropic. Near a surface
- * bonds are missing on one side, and m is less: bonds along the surface count too much, by up to a half in S. A bar of ten by ten rows would
- * be 19 % too stiff, one of three by three rows twice as stiff as it should be (docs/theory.md 3).
+ * A family shows the moduli of its material in every uniform strain if
+ *   S = sum w |xi|^2 n n n n / m
+ * over its bonds is isotropic. Near a surface bonds are missing on one side, and m is less: bonds along the surface
+ * count too much, by up to a half in S. A bar of ten by ten rows would be 19 % too stiff, one of three by three rows
+ * twice as stiff as it should be (docs/theory.md 3).
  *
- * So every bond of which both ends lack bonds gets a factor s, alike for both ends. In each of five turns every such family finds the smallest change
- * h(n) = x . H(n) of its factors that makes S isotropic, H being the products of the fourth order of the components of n less their means:
- *   (A + c) x = -sum q H,  A = sum q H H over the bonds that may change,  q = w s |xi|^2 over its sum,
- * and s becomes s (1 + (h_i + h_j) / 2). The damping c leaves be what no positive factors mend: at an edge, bonds on one side only have
- * products n_x n_y of one sign. Components of H count by their multiplicities, so that nothing depends on the axes.
+ * Every bond of which both ends lack bonds gets a factor s, alike for both ends. In each of five turns every such family
+ * finds the smallest change of its factors that makes S isotropic,
+ *   h(n) = x . H(n),
+ * where H are the products of the fourth order of the components of n less their means:
+ *   (A + c) x = -sum q H,  A = sum q H H over the bonds that may change,  q = w s |xi|^2 over its sum.
+ * The factor s becomes s (1 + (h_i + h_j) / 2). The damping c leaves errors that no positive factors remove: at an edge,
+ * bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so that
+ * nothing depends on the axes.
  *
- * With even strains right everywhere beams of few rows would bend too much: bonds at a face have their middles inside of it, where the strain of
- * bending is less. So families that lack much of their volume go without a sixth of the changes, which leaves surfaces stiffer by a little: tension and
- * bending of bodies of eight rows and more are both within 5 %. */
+ * With even strains right everywhere beams of few rows would bend too much: bonds at a face have their middles inside
+ * of the face, where the strain of bending is less. Families that lack much of their volume therefore go without a
+ * sixth of the changes, which leaves surfaces a little stiffer: tension and bending of bodies of eight rows and more
+ * are both within 5 %. */
 #include "formulation/ordinary.h"
 
 #include "base/lanes.h"
@@ -281,7 +288,8 @@ static void families_change_slice(void *context, int64_t slice)
 
 /* ---- how much of it ---- */
 
-/** Volume of a family inside a block with its particle: of its lattice, or the largest one of particles from a file, at most that of the horizon. */
+/** Volume of a family inside a block with its particle: of its lattice, or the largest one of particles from a file,
+ *  at most that of the horizon. */
 static double families_inside_volume(const Ordinary *o, int block)
 {
   const Lattice *lattice = &o->body->lattices[block];
@@ -327,7 +335,7 @@ int ordinary_balance_families(Ordinary *o, Error *error)
   const int64_t places = o->particles->places;
   const Family *f = o->family;
   FamilyBalance b = {.o = o};
-  /* Images lack the neighbours in blocks of other formulations that their originals have: the stiffness would not be symmetric. */
+  /* With images beside other formulations the stiffness was found to be unsymmetric, for a cause that is not known. */
   if (o->foreign && o->body->margin_of) return BRECCIA_OK;
   families_list_terms(&b);
   b.wish = memory_zeroed((size_t)places, sizeof *b.wish, "bond constants", error);

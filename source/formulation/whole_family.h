@@ -7,8 +7,8 @@
 /** Share of the volume of the horizon, or of the largest family, from which on a family counts as whole. */
 #define WHOLE_FAMILY_SHARE 0.95
 
-/** Volume from which a particle of a file and its neighbours count as a family inside the block: 95 % of the horizon's, or of that of the largest family,
- *  if that is less.
+/** Volume from which a particle of a file and its neighbours count as a family inside the block: 95 % of the
+ *  horizon's, or of that of the largest family, if that is less.
  *  @param[in] least  share of the horizon that the largest family must fill
  *  @return infinite if it does not */
 double whole_family_volume(const Body *body, const Family *family, int block, double least);

@@ -29,9 +29,9 @@ bool platen_can_turn(const Constraint *constraint, const Body *body);
  */
 bool platen_is_narrow(const Constraint *constraint, const Body *body);
 
-/** Sets the velocities of the leaders when the motion of the centre begins, which may be at once: the plate turns on with
- *  the moment of momentum of its particles. By one thread. @param[in] step  time over a small part of which displacements
- *  are differenced */
+/** Sets the velocities of the leaders when the motion of the centre begins, which may be at once: the plate turns on
+ *  with the moment of momentum of its particles. By one thread.
+ *  @param[in] step  time over a small part of which displacements are differenced */
 void platen_start(const Constraint *constraint, const Particles *particles, double time, double step);
 
 /** Sets the external forces on the leaders so that they accelerate with the plate under the forces on all its

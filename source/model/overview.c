@@ -91,8 +91,8 @@ static void add_duration(Text *text, double seconds)
 }
 
 /** Returns true if stages to come may take more steps than the deck says: implicit ones cut steps that err by more than
- *  'local error', static ones increments in which a law or bonds leave no equilibrium near, quasi-static ones hold longer
- *  while the body still comes to rest. */
+ *  'local error', static ones increments in which a law or bonds leave no equilibrium near, quasi-static ones hold
+ *  longer while the body still comes to rest. */
 static bool steps_may_be_cut(const breccia_model *model)
 {
   const Domain *d = &model->domain;

@@ -58,7 +58,6 @@ static const Material *find_material(const Domain *d)
 
 void plausibility_warn_of_strains(breccia_model *model)
 {
-  const double told_from = 0.02;
   const Material *material = find_material(&model->domain);
   const Loading *loading = &model->loading;
   const Load *load = NULL;
@@ -68,7 +67,7 @@ void plausibility_warn_of_strains(breccia_model *model)
     for (int k = 0; find_motion(model, &loading->constraints[i], &a) && k < i; ++k) {
       if (!find_motion(model, &loading->constraints[k], &b)) continue;
       const double strain = strain_between(&model->domain.body, &a, &b);
-      if (!(fabs(strain) > fmax(told_from, fabs(largest)))) continue;
+      if (!(fabs(strain) > fmax(run_strain_told_from, fabs(largest)))) continue;
       largest = strain;
       load = (fabs(a.displacement) > fabs(b.displacement) ? &a : &b)->constraint->load;
     }

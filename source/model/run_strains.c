@@ -9,8 +9,7 @@
 #include "base/tensor.h"
 #include <math.h>
 
-/** Strain from which it is said what the measure means: forces are then off by 2 %, true stresses by 4 %. */
-static const double told_from = 0.02;
+const double run_strain_told_from = 0.02;
 
 bool run_strain_matters(const Region *region, const Material *material)
 {
@@ -77,7 +76,7 @@ void run_tell_strains(const breccia_model *model, Text *t)
 {
   const Peaks *p = &model->peaks;
   const double strain = p->strain_high > -p->strain_low ? p->strain_high : p->strain_low;
-  if (!(fabs(strain) > told_from)) return;
+  if (!(fabs(strain) > run_strain_told_from)) return;
   const double stretch = sqrt(fmax(0, 1 + 2 * strain));
   text_add(t,
            "warning: laws that flow or soften have seen Green-Lagrange strains from %.3g to %.3g: forces on what flows "

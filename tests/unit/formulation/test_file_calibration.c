@@ -49,7 +49,8 @@ static double energy_along(breccia_model *m, double turn, double turned, double 
   return stored.stored / (p->volume[middle] * 75 * strain * strain);
 }
 
-/** A square lattice from a file is the lattice of a box: constants by integrals were 12 % too stiff, with a Poisson ratio of 0.35. */
+/** A square lattice from a file is the lattice of a box: constants by integrals were 12 % too stiff, with a Poisson
+ *  ratio of 0.35. */
 static void links_of_a_lattice_from_a_file_are_those_of_a_box(void **state)
 {
   (void)state;
@@ -72,8 +73,8 @@ static void read_told(const breccia_model *m, const char *words, const char *for
   assert_int_equal(sscanf(told + strlen(words), format, one, other), 2);
 }
 
-/** Rows that are shifted are not alike in all directions. Linear bonds are right in uniform expansion, or with 'calibration: uniaxial' along x, and `check`
- *  tells what they show in tension. */
+/** Rows that are shifted are not alike in all directions. Linear bonds are right in uniform expansion, or with
+ *  'calibration: uniaxial' along x, and `check` tells what they show in tension. */
 static void check_tells_what_bonds_of_shifted_rows_show(void **state)
 {
   (void)state;

@@ -312,8 +312,8 @@ static void cracks_take_the_fracture_energy_at_any_spacing(void **state)
   if (found < 0.998 || found > 1.3) fail_msg("square: %g of the fracture energy", found);
 }
 
-/** Links of scattered particles lose their force at the stretch at which those of a fine lattice do: of a Poisson ratio of
- * 1/4, which links without bending have. */
+/** Links of scattered particles lose their force at the stretch at which those of a fine lattice do: of a Poisson
+ *  ratio of 1/4, which links without bending have. */
 static void scattered_links_end_where_those_of_a_fine_lattice_do(void **state)
 {
   (void)state;

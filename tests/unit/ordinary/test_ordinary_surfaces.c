@@ -1,4 +1,5 @@
-/* Ordinary bars and strips of few rows, from boxes and from files, against Hooke's closed forms: families at surfaces and of scattered rows. */
+/* Ordinary bars and strips of few rows, from boxes and from files, against Hooke's closed forms: families at surfaces
+ * and of scattered rows. */
 #include "ordinary_body.h"
 
 #include <unistd.h>
@@ -78,7 +79,8 @@ static void bars_of_few_rows_are_as_long_as_hooke_says(void **state)
   }
 }
 
-/** Deflection of the end of a cantilever in plane stress, ten times as long as deep, over that of Timoshenko's beam with Cowper's factor. */
+/** Deflection of the end of a cantilever in plane stress, ten times as long as deep, over that of Timoshenko's beam
+ *  with Cowper's factor. */
 static double bent_cantilever(int rows, double horizon, double poisson)
 {
   const double length = 10 * rows, x = length - 0.5, inertia = pow(rows, 3) / 12, force = 1e-4 * inertia;
@@ -99,8 +101,8 @@ static double bent_cantilever(int rows, double horizon, double poisson)
   return found / (wanted * force / pow(length, 3));
 }
 
-/** Bonds at a face have their middles inside of it, where bending strains less: with even strains right everywhere eight rows would bend by 9 % too
- *  much, with weights of the lattice alone by 15 % too little. */
+/** Bonds at a face have their middles inside of it, where bending strains less: with even strains right everywhere
+ *  eight rows would bend by 9 % too much, with weights of the lattice alone by 15 % too little. */
 static void beams_of_eight_rows_bend_as_timoshenko_says(void **state)
 {
   (void)state;
