@@ -7,13 +7,13 @@
  * count too much, by up to a half in S. A bar of ten by ten rows would be 19 % too stiff, one of three by three rows
  * twice as stiff as it should be (docs/theory.md 3).
  *
- * Every bond of which both ends lack bonds gets a factor s, alike for both ends. In each of five turns every such family
- * finds the smallest change of its factors that makes S isotropic,
+ * Every bond of which both ends lack bonds gets a factor s, alike for both ends. In each of five turns every such
+ * family finds the smallest change of its factors that makes S isotropic,
  *   h(n) = x . H(n),
  * where H are the products of the fourth order of the components of n less their means:
  *   (A + c) x = -sum q H,  A = sum q H H over the bonds that may change,  q = w s |xi|^2 over its sum.
- * The factor s becomes s (1 + (h_i + h_j) / 2). The damping c leaves errors that no positive factors remove: at an edge,
- * bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so that
+ * The factor s becomes s (1 + (h_i + h_j) / 2). The damping c leaves errors that no positive factors remove: at an
+ * edge, bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so that
  * nothing depends on the axes.
  *
  * With even strains right everywhere beams of few rows would bend too much: bonds at a face have their middles inside

@@ -283,8 +283,8 @@ static double block_sizes(const Ordinary *o, int block, double size[3])
   return longest;
 }
 
-/** Adds the least and the largest share of Young's modulus that the families of a block show in tension, along axes that
- *  are not much shorter than the longest one, as thin parts are stretched and bent along themselves. */
+/** Adds the least and the largest share of Young's modulus that the families of a block show in tension, along axes
+ *  that are not much shorter than the longest one, as thin parts are stretched and bent along themselves. */
 static void describe_tension(const Ordinary *o, int block, Text *text)
 {
   const double most = 0.03, not_short = 0.5;

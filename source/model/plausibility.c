@@ -236,8 +236,8 @@ static void check_material(breccia_model *model, int k)
 }
 
 /** Ordinary families near free faces lack bonds that would tell their volume, so that bodies of what keeps its volume
- *  bend less. Measured: the deflection of plates in pure bending, plane strain, over that of beams, by horizons of 3.015
- *  spacings (docs/choosing.md). */
+ *  bend less. Measured: the deflection of plates in pure bending, plane strain, over that of beams, by horizons of
+ *  3.015 spacings (docs/choosing.md). */
 static void check_locking(breccia_model *model, const Region *region)
 {
   const Node *keys = region->keys ? ((const SectionHead *)region->keys)->node : NULL,

@@ -45,7 +45,8 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error);
 /** Reinforcing bars in it: a list for summary.json, and lines for people. Nothing where there are none. */
 void run_add_bars(const breccia_model *model, Text *text);
 void run_tell_bars(const breccia_model *model, Text *text);
-/** Strain from which on runs and `check` tell what the measure means: forces are then off by 2 %, true stresses by 4 %. */
+/** Strain from which on runs and `check` tell what the measure means: forces are then off by 2 %, true stresses by
+ *  4 %. */
 extern const double run_strain_told_from;
 /** Returns true if a law has a history, or is in a server, and takes the Green-Lagrange strain in a region
  *  (run_strains.c). */
