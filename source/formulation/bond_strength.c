@@ -1,6 +1,6 @@
 /* Strength of a lattice of softening bonds: what an infinite body carries at most that is pulled along one direction
- * and free across it, over what one bond carries at most. Slanted bonds still gain when those along the pull have begun to
- * soften, so that the body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
+ * and free across it, over what one bond carries at most. Slanted bonds still gain when those along the pull have
+ * begun to soften, so that the body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
  *   sigma = 1/2 sum (c / E) w L sigma_b(n . e n) n n
  * over the bonds of a particle, with the stress sigma_b of the law. */
 #include "base/memory.h"

@@ -13,8 +13,8 @@
  * where H are the products of the fourth order of the components of n less their means:
  *   (A + c) x = -sum q H,  A = sum q H H over the bonds that may change,  q = w s |xi|^2 over its sum.
  * The factor s becomes s (1 + (h_i + h_j) / 2). The damping c leaves errors that no positive factors remove: at an
- * edge, bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so that
- * nothing depends on the axes.
+ * edge, bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so
+ * that nothing depends on the axes.
  *
  * With even strains right everywhere beams of few rows would bend too much: bonds at a face have their middles inside
  * of the face, where the strain of bending is less. Families that lack much of their volume therefore go without a
