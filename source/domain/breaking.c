@@ -4,6 +4,7 @@
  * less what is stored without it, less half of what its force would have done along the step, because the trapezium rule that sums the
  * works (solver/explicit.c) finds the bond gone at the end of the step. Where families share energies, as in correspondence, a place that
  * loses bonds stores another energy with those that are left; never more than before (docs/theory.md 4). */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "domain/domain.h"
@@ -393,4 +394,46 @@ void domain_mend(Domain *d)
   d->out_of_memory = false;
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
   forces_undo(&d->forces);
+}
+
+/** Work of a timed pass of the criterion: slices to test and whether the criterion tests them in every step. */
+typedef struct CriterionPass {
+  Domain *domain;
+  int64_t slices;
+  bool every_step;
+} CriterionPass;
+
+static void breaking_test_slice(void *context, int64_t index)
+{
+  CriterionPass *pass = context;
+  const Failure *failure = &pass->domain->failure;
+  uint8_t suspect = 0;
+  const double motion = failure->criterion->suspect(failure, &pass->domain->family, index, &suspect);
+  if (index == 0) pass->every_step = motion == 0;
+}
+
+double domain_criterion_seconds(Domain *d, double enough)
+{
+  enum { FIRST = 64 };
+  const double stretch = 1e-12; /* criteria skip bonds that are not longer than in the reference shape */
+  Particles *p = d->particles;
+  const size_t bytes = sizeof(double) * (size_t)p->places;
+  double *kept =
+      d->failure.criterion && d->failure.criterion->suspect ? memory_plain(3 * (size_t)p->places, sizeof *kept) : NULL;
+  if (!kept) return 0;
+  for (int k = 0; k < 3; ++k) {
+    memcpy(kept + (size_t)k * (size_t)p->places, p->displacement[k], bytes);
+    for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] = stretch * p->position[k][i];
+  }
+  CriterionPass pass = {.domain = d};
+  double seconds = 0;
+  for (int64_t slices = FIRST; pass.slices < p->slices && seconds < enough; slices *= 2) {
+    const double begin = clock_seconds();
+    pass.slices = slices < p->slices ? slices : p->slices;
+    team_each(pass.slices, breaking_test_slice, &pass);
+    seconds = clock_seconds() - begin;
+  }
+  for (int k = 0; k < 3; ++k) memcpy(p->displacement[k], kept + (size_t)k * (size_t)p->places, bytes);
+  free(kept);
+  return pass.every_step ? seconds * (double)p->slices / (double)pass.slices : 0;
 }

@@ -236,6 +236,11 @@ double domain_step_begin(const Domain *domain);
  *  the step under way, strains and stresses those at its beginning. */
 void domain_break(Domain *domain, const Moment *moment);
 
+/** Measures the time that the failure criterion takes in one step, on a part of the body if the whole takes longer than
+ *  `enough` [s]. Bonds are tested as if all were stretched; displacements come back unchanged.
+ *  @return seconds a step; 0 without a criterion and for criteria that need not test every step */
+double domain_criterion_seconds(Domain *domain, double enough);
+
 /** When laws have answered to families without their broken bonds, by all threads: what torn places had received and have no more is booked,
  *  and families that would have gained carry less. Of the places of one region. */
 void domain_settle(Domain *domain, const Region *region);

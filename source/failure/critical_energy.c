@@ -106,19 +106,6 @@ static double least_limit(const Failure *failure, const Family *f, int64_t slice
   return least;
 }
 
-static double suspect(const Failure *failure, const Family *f, int64_t slice, uint8_t *suspects)
-{
-  const FailureRegion *own = &failure->regions[failure->region[slice]];
-  const EnergyLimit limit = {.half = least_limit(failure, f, slice) / 2,
-                             .influence = failure->weights,
-                             .of = failure->influence,
-                             .moved = failure->moved};
-  if (isinf(limit.half)) return INFINITY;
-  if (own->type->energy_room) return own->type->energy_room(own->formulation, slice, &limit, suspects);
-  *suspects = 1;
-  return 0;
-}
-
 /** What a bond holds by the formulation of one of its ends, per volume squared. */
 static double half_energy(const Failure *failure, const Family *f, int64_t slice, int64_t slot, int lane,
                           const Bond *bond)
@@ -165,7 +152,10 @@ static Judgement judge(const Failure *failure, const Family *f, int64_t slice, i
   double (*held)(const void *, int64_t, int64_t, int) = region->type->held_energy;
   const double own = half_energy(failure, f, slice, slot, lane, bond);
   if (!held && own < limit / 2 * (1 - 1e-12)) return (Judgement){0};
-  const int64_t there = bond->neighbour / SLICE, back = family_slot(f, bond->neighbour, (int32_t)place);
+  const int64_t there = bond->neighbour / SLICE;
+  const bool alike = failure->region[there] == failure->region[slice]; /* both halves are equal but for round-off */
+  if (held && alike && own < small * limit / 2 * (1 - 1e-6)) return (Judgement){0};
+  const int64_t back = family_slot(f, bond->neighbour, (int32_t)place);
   const Bond turned = family_bond(f, there, back, bond->neighbour % SLICE);
   const double both = own + half_energy(failure, f, there, back, bond->neighbour % SLICE, &turned);
   if (!held) return (Judgement){both > limit, both, limit};
@@ -173,6 +163,28 @@ static Judgement judge(const Failure *failure, const Family *f, int64_t slice, i
   if (!(both > small * limit)) return (Judgement){0};
   const double all = held(region->formulation, slice, slot, lane);
   return (Judgement){all > limit * volumes, all, limit * volumes};
+}
+
+/** Marks a slice with a bond beyond its limit, by its formulation's own fast test where it has one. A bond of one region
+ *  is judged from its first end only. */
+static double suspect(const Failure *failure, const Family *f, int64_t slice, uint8_t *suspects)
+{
+  const FailureRegion *own = &failure->regions[failure->region[slice]];
+  const EnergyLimit limit = {.half = least_limit(failure, f, slice) / 2,
+                             .influence = failure->weights,
+                             .of = failure->influence,
+                             .moved = failure->moved};
+  if (isinf(limit.half)) return INFINITY;
+  if (own->type->energy_room) return own->type->energy_room(own->formulation, slice, &limit, suspects);
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1] && !*suspects; ++slot)
+    for (int lane = 0; lane < SLICE && !*suspects; ++lane) {
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      const Bond bond = family_bond(f, slice, slot, lane);
+      const bool alike = failure->region[bond.neighbour / SLICE] == failure->region[slice];
+      if (alike && bond.neighbour < slice * SLICE + lane) continue;
+      *suspects = judge(failure, f, slice, slot, &bond, lane).exceeds;
+    }
+  return 0;
 }
 
 static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)

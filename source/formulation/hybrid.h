@@ -211,12 +211,16 @@ static inline int hybrid_member_of(const HybridView *view, int32_t place)
 typedef struct HybridRows {
   int64_t place, row;
   int64_t slot, owner; /* of the place's bond; slice of the bond's owner */
+  int64_t other;       /* index of the bond's other end */
   bool alone;          /* its other end is of another formulation */
   bool more;           /* its second row is still to come */
 } HybridRows;
 HybridRows hybrid_rows(const Hybrid *hybrid, int64_t place);
 /** @return false: there are no more */
 bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
+/** Returns false if the row that `hybrid_rows_next` found last cannot have a particle among its members, because the particle is
+ *  further from the bond's other end than any neighbour. */
+bool hybrid_rows_near(const Hybrid *hybrid, const HybridRows *rows, int32_t place);
 
 /* ---- between the two kinds of geometry ---- */
 

@@ -117,6 +117,7 @@ void hybrid_half_state(const void *formulation, double *const *at, int64_t slice
     HybridRow row;
     HybridView view;
     for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
+      if (!hybrid_rows_near(h, &rows, places[!end])) continue;
       hybrid_view_at(h, &row, &view);
       if (!end || hybrid_member_of(&view, places[0]) >= 2) add_pair(h, rows.row, &view, at, places, force);
     }

@@ -106,6 +106,7 @@ static double lost_by_all(const Hybrid *h, const int32_t places[2], double time,
     HybridRow row;
     HybridView view;
     for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
+      if (!hybrid_rows_near(h, &rows, places[!end])) continue;
       hybrid_view_at(h, &row, &view);
       const int other = hybrid_member_of(&view, places[!end]);
       if (other == view.count || (end && other < 2)) continue;

@@ -80,17 +80,17 @@ HybridRows hybrid_rows(const Hybrid *h, int64_t place)
   return (HybridRows){.place = place, .slot = h->family->first[place / SLICE] - 1};
 }
 
-/** The next slot of the place whose bond has rows. @param[out] other  its other end */
-static bool next_slot(const Hybrid *h, HybridRows *rows, int64_t *other)
+/** Moves to the next slot of the place whose bond has rows. @return false if no slot is left */
+static bool next_slot(const Hybrid *h, HybridRows *rows)
 {
   const Family *f = h->family;
   const int64_t slice = rows->place / SLICE;
   const int lane = (int)(rows->place % SLICE);
   while (++rows->slot < f->first[slice + 1]) {
     if (!(f->intact[rows->slot] >> lane & 1)) continue;
-    *other = rows->slot < f->stored[slice] ? family_base(f, slice, rows->slot) + lane
-                                           : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
-    if (!is_foreign(h->foreign, rows->place) || !is_foreign(h->foreign, *other)) return true;
+    rows->other = rows->slot < f->stored[slice] ? family_base(f, slice, rows->slot) + lane
+                                                : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
+    if (!is_foreign(h->foreign, rows->place) || !is_foreign(h->foreign, rows->other)) return true;
   }
   return false;
 }
@@ -98,7 +98,7 @@ static bool next_slot(const Hybrid *h, HybridRows *rows, int64_t *other)
 bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
 {
   const Family *f = h->family;
-  int64_t both[2], other;
+  int64_t both[2];
   if (rows->more) {
     rows->more = false;
     bond_list_rows(h->bonds, f, rows->place / SLICE, rows->slot, (int)(rows->place % SLICE), both);
@@ -106,7 +106,8 @@ bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
     *at = row_of(h, rows->owner, rows->row);
     return true;
   }
-  if (!next_slot(h, rows, &other)) return false;
+  if (!next_slot(h, rows)) return false;
+  const int64_t other = rows->other;
   const bool from_there = is_foreign(h->foreign, rows->place);
   rows->alone = from_there || is_foreign(h->foreign, other);
   const int64_t from = from_there ? other : rows->place;
@@ -117,6 +118,14 @@ bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
   rows->row = both[0];
   *at = row_of(h, rows->owner, rows->row);
   return true;
+}
+
+bool hybrid_rows_near(const Hybrid *h, const HybridRows *rows, int32_t place)
+{
+  const double *const *x = (const double *const *)h->particles->position, reach = h->family->reach * (1 + 1e-6);
+  double square = 0;
+  for (int k = 0; k < 3; ++k) square += (x[k][rows->other] - x[k][place]) * (x[k][rows->other] - x[k][place]);
+  return square <= reach * reach;
 }
 
 double hybrid_volume(const Hybrid *h, const HybridRow *at)

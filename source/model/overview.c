@@ -31,6 +31,11 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
   return task;
 }
 
+/* Memory of a run besides the body, its formulations and its solver: the program with its libraries, and work arrays of
+ * result files and last words (measured on bodies of all formulations, docs/performance.md). */
+#define PROGRAM_BYTES 25e6
+#define PARTICLE_BYTES 112
+
 /** Mean seconds of one evaluation of the forces. On a quiet machine a tenth of a second is enough; where others use it too, two seconds,
  *  in which they have had their turns. Never more than a tenth of what the whole run takes. */
 static double measure_evaluation(breccia_model *model)
@@ -70,8 +75,10 @@ int model_expect(breccia_model *model, Error *error)
     names.fields = list.items;
     names.count = list.count;
     const double evaluation = measure_evaluation(model);
-    outlook_expect(&model->outlook, cost.evaluations * evaluation + cost.seconds, result_file_state_bytes(d, &names),
-                   (double)(domain_particle_bytes(d)), d->particles->count);
+    const double criterion =
+        domain_criterion_seconds(&model->domain, fmin(0.1, evaluation * (double)model->solver.clock.steps));
+    outlook_expect(&model->outlook, cost.evaluations * evaluation + cost.seconds + criterion,
+                   result_file_state_bytes(d, &names), (double)(domain_particle_bytes(d)), d->particles->count);
     model->outlook.least = cost.least;
     model->solver_bytes = cost.bytes;
   }
@@ -232,8 +239,9 @@ const char *breccia_model_overview(breccia_model *model)
   const bool more = steps_may_be_cut(model);
   if (more && s->clock.stages == 1)
     text_add(text, ", at least %lld steps", (long long)(s->clock.steps - s->clock.step));
-  text_add(text, ", %.0f MB, %s ", ((double)domain_bytes(d) + model->solver_bytes) / 1e6,
-           more || model->outlook.least ? "at least" : "about");
+  const double bytes =
+      (double)domain_bytes(d) + model->solver_bytes + PROGRAM_BYTES + PARTICLE_BYTES * (double)d->particles->count;
+  text_add(text, ", %.0f MB, %s ", bytes / 1e6, more || model->outlook.least ? "at least" : "about");
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (model->outlook.least && s->type->few_steps && domain_may_soften(d))
