@@ -6,7 +6,7 @@ import re
 import resource
 import shutil
 
-from reporting import breccia, work
+from reporting import breccia, failure_load, trials, work
 
 
 def last(path):
@@ -32,14 +32,24 @@ class Beam:
         self.folder = os.path.join(work.name, "-".join([deck, *(f"{key}-{value}" for key, value in settings.items())]).replace(" ", "").replace("/", "-"))
 
     def search(self, low, high, within=0.01):
-        """The largest load that it bears and the smallest under which it fails."""
-        folder = self.folder + "-search"
-        breccia("failure", self.deck, *self.words, "--load", f"variables.load={low} {self.unit}:{high} {self.unit}", "--within", str(within), "--output", folder)
-        with open(os.path.join(folder, "failure.csv")) as file:
-            trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
-        self.fails = min(load for load, outcome in trials if outcome != "bears it")
-        self.bears = max(load for load, outcome in trials if outcome == "bears it" and load < self.fails)
+        """The largest load that the beam bears and the smallest under which it fails."""
+        self.bears, self.fails = failure_load(self.trials(low, high, within, 0, "-search"))
         return self.bears, self.fails
+
+    def shares(self, low, high, bands, loads):
+        """Rows (first and last load of a band, how many loads in it, under how many of them the beam fails). The bands divide
+        the range between two loads, of which the beam must bear the first and fail under the second."""
+        outcomes, rows = self.trials(low, high, 0.9, bands * loads, "-shares"), []
+        for band in range(bands):
+            first, last = (low + (high - low) * (band + k) / bands for k in (0, 1))
+            inside = [outcome for load, outcome in outcomes.items() if first < load < last]
+            rows.append((first, last, len(inside), sum(outcome != "bears it" for outcome in inside)))
+        return rows
+
+    def trials(self, low, high, within, samples, name):
+        """{load: outcome} of the runs of `breccia failure`."""
+        return trials(self.deck, *self.words, "--load", f"variables.load={low} {self.unit}:{high} {self.unit}", "--within", str(within),
+                      "--samples", str(samples), output=self.folder + name)
 
     def run(self, load, pictures=()):
         """Runs it under a load and keeps pictures: (what the program calls them, the names here of all that it drew of this, in order of time)."""

@@ -1,11 +1,10 @@
 """What the two examples with plates of concrete share (Tuniki 2012, chapter 4): failure loads found by the program, beside those of the thesis and of ACI 318."""
-import csv
 import os
 import shutil
 import tempfile
 from math import floor, sqrt
 
-from reporting import breccia, work
+from reporting import breccia, failure_load, trials, work
 
 POUND = 4.448222  # N
 
@@ -33,11 +32,8 @@ class Plate:
         self.variables = {"width": f"{width} in", "rows": self.rows, **more}
         self.keys = keys or {}
         self.folder = os.path.join(tempfile.mkdtemp(dir=work.name), "plate")
-        breccia("failure", "plate.yaml", *self.settings(), "--load", f"variables.load={low} N:{high} N", "--within", f"{within}", "--output", self.folder)
-        with open(os.path.join(self.folder, "failure.csv")) as file:
-            trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
-        self.fails = min(load for load, outcome in trials if outcome != "bears it")
-        self.bears = max(load for load, outcome in trials if outcome == "bears it" and load < self.fails)
+        self.bears, self.fails = failure_load(trials("plate.yaml", *self.settings(), "--load", f"variables.load={low} N:{high} N", "--within", f"{within}",
+                                                     output=self.folder))
 
     def settings(self):
         return [word for key, value in {**{f"variables.{key}": value for key, value in self.variables.items()}, **self.keys}.items() for word in ("--set", f"{key}={value}")]

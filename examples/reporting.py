@@ -54,6 +54,21 @@ def breccia(*words, check=True):
     return subprocess.run([program, *words], check=check, capture_output=True, text=True)
 
 
+def trials(*words, output):
+    """Runs `breccia failure` with these words. @return {load in the unit of the words: outcome}"""
+    breccia("failure", *words, "--output", output)
+    with open(os.path.join(output, "failure.csv")) as file:
+        rows = list(csv.reader(file))
+    load, outcome = [name.split(" (")[0] for name in rows[0]].index("load"), rows[0].index("outcome")
+    return {float(row[load]): row[outcome] for row in rows[1:]}
+
+
+def failure_load(outcomes):
+    """The largest load that a body bears and the smallest under which it fails, of {load: outcome}."""
+    fails = min(load for load, outcome in outcomes.items() if outcome != "bears it")
+    return max(load for load, outcome in outcomes.items() if outcome == "bears it" and load < fails), fails
+
+
 def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])

@@ -5,7 +5,7 @@ import os
 import shutil
 from math import sqrt
 
-from reporting import between, breccia, table, work
+from reporting import between, breccia, failure_load, table, trials, work
 
 UNIT = 356  # N on a particle: 251 psi over the width, as in the thesis
 LOADED, GAPS, INCH = 47, 50, 0.0254
@@ -17,12 +17,7 @@ with open(os.path.join(folder, "end.csv")) as file:
     moved = -1e3 * float(list(csv.reader(file))[-1][3])
 stress = LOADED * 16 * UNIT / (15 * INCH**2)
 closed = 1e3 * stress * (1 - 0.2**2) / (3.605e6 * 6894.757) * GAPS * INCH * sqrt(3) / 2 / 2
-search = os.path.join(work.name, "search")
-breccia("failure", "plate.yaml", "--load", "variables.load=5696 N:22784 N", "--within", "0.02", "--output", search)
-with open(os.path.join(search, "failure.csv")) as file:
-    trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
-fails = min(load for load, outcome in trials if outcome != "bears it")
-bears = max(load for load, outcome in trials if outcome == "bears it" and load < fails)
+bears, fails = failure_load(trials("plate.yaml", "--load", "variables.load=5696 N:22784 N", "--within", "0.02", output=os.path.join(work.name, "search")))
 even = os.path.join(work.name, "even")
 breccia("run", "plate.yaml", "--set", "variables.edges=0.5", "--set", f"variables.load={64 * UNIT} N", "--quiet", "--output", even)
 with open(os.path.join(even, "summary.json")) as file:

@@ -3,7 +3,7 @@ import csv
 import os
 import re
 
-from reporting import between, breccia, chart, table, work
+from reporting import between, breccia, chart, failure_load, table, trials, work
 
 RAMPS = (0.25, 0.5, 1, 2)  # periods
 COLOURS = ("#c8501e", "#21918c")
@@ -17,11 +17,7 @@ def settings(ramp, hold, ratio):
 def fails(ramp, hold, ratio):
     """The two loads a hundredth apart."""
     folder = os.path.join(work.name, f"search-{ramp}-{ratio}")
-    breccia("failure", "plate.yaml", "--load", "variables.load=150 N:420 N", "--within", "0.01", *settings(ramp, hold, ratio), "--output", folder)
-    with open(os.path.join(folder, "failure.csv")) as file:
-        trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
-    above = min(load for load, outcome in trials if outcome != "bears it")
-    return max(load for load, outcome in trials if outcome == "bears it" and load < above), above
+    return failure_load(trials("plate.yaml", "--load", "variables.load=150 N:420 N", "--within", "0.01", *settings(ramp, hold, ratio), output=folder))
 
 
 def history(ramp):
