@@ -352,6 +352,21 @@ BRECCIA_API int breccia_plot_over_length(const char *result, const breccia_plot 
 /** @return 1 if pictures can be drawn to files with this ending */
 BRECCIA_API int breccia_can_draw(const char *path);
 
+/* ---- why bonds broke ---- */
+
+typedef struct breccia_why {
+  size_t size;
+  long long first;   /* number of broken bonds to list, in the order in which they broke */
+  int one_bond;      /* 1: only the bond between two particles */
+  long long bond[2]; /* numbers of the two particles, with one_bond */
+} breccia_why;
+
+/** Tells how many bonds of a result broke from which cause, and when, where and why single ones did.
+ *  @param[in]  result  folder of results, or a file of them
+ *  @param[out] text    for breccia_text_free; NULL after a failure
+ *  @return 0; 2: no results, damaged ones, or a bond that did not break */
+BRECCIA_API int breccia_explain_breaks(const char *result, const breccia_why *wish, char **text, breccia_error *error);
+
 /* ---- the laboratory: one material point ---- */
 
 typedef struct breccia_test breccia_test;

@@ -15,9 +15,9 @@
 #include <string.h>
 #include <unistd.h>
 
-const Verb *const verbs[] = {&verb_run,       &verb_study, &verb_failure,  &verb_check,      &verb_modes,
-                             &verb_new,       &verb_plot,  &verb_spectrum, &verb_models,     &verb_material,
-                             &verb_calibrate, &verb_serve, &verb_schema,   &verb_completion, NULL};
+const Verb *const verbs[] = {&verb_run,   &verb_study,  &verb_failure,    &verb_check,  &verb_modes,    &verb_new,
+                             &verb_plot,  &verb_why,    &verb_spectrum,   &verb_models, &verb_material, &verb_calibrate,
+                             &verb_serve, &verb_schema, &verb_completion, NULL};
 
 enum { MOST_VERBS = sizeof verbs / sizeof *verbs, MOST_OPTIONS = 32 };
 

@@ -21,7 +21,7 @@ typedef struct Verb {
 } Verb;
 
 extern const Verb verb_run, verb_check, verb_schema, verb_models, verb_material, verb_calibrate, verb_plot, verb_new,
-    verb_serve, verb_completion, verb_study, verb_failure, verb_modes, verb_spectrum;
+    verb_serve, verb_completion, verb_study, verb_failure, verb_modes, verb_spectrum, verb_why;
 
 /** All verbs, ending in NULL. */
 extern const Verb *const verbs[];

@@ -28,6 +28,22 @@ static bool make_room(void **array, size_t size, int64_t count, int64_t *capacit
   return true;
 }
 
+const char *break_cause_word(BreakCause cause)
+{
+  static const char *const words[BREAK_CAUSES] = {"limit", "law", "isolated"};
+  return words[cause];
+}
+
+void domain_bond_middle(const Domain *d, const int32_t bond[2], double middle[3])
+{
+  const bool outside[2] = {body_outside(&d->body, bond[0]), body_outside(&d->body, bond[1])};
+  int64_t ends[2] = {outside[0] && !outside[1] ? bond[1] : bond[0], outside[1] && !outside[0] ? bond[0] : bond[1]};
+  for (int k = 0; k < 2; ++k) ends[k] = body_original(&d->body, ends[k]);
+  const int32_t a = d->particles->place_of[ends[0]], b = d->particles->place_of[ends[1]];
+  double *const *x = d->particles->position;
+  for (int k = 0; k < 3; ++k) middle[k] = without_rounding((x[k][a] + x[k][b]) / 2, d->family.horizon);
+}
+
 int domain_record(Domain *d, const BrokenBond *bond)
 {
   if (!make_room((void **)&d->broken, sizeof *d->broken, d->broken_count, &d->broken_capacity)) return BRECCIA_FAILURE;
@@ -89,18 +105,27 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns E_c / E, the energy of a bond at its limit over its present energy. At rest E exceeds E_c where an
- *  increment or a crack that runs has carried the bond beyond its limit; the difference is booked as shed. In motion
- *  returns 1. */
-static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment)
+/** Returns the value of a bond that the criterion limits, without the raise of limits that orders bonds. */
+static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane, double *limit)
 {
-  const Criterion *criterion = d->failure.criterion;
-  if (!moment->most || !criterion || !criterion->share_at_limit) return 1;
   const Bond bond = family_bond(&d->family, slice, slot, lane);
   const double beyond = d->failure.beyond;
   d->failure.beyond = 0;
-  const double share = criterion->share_at_limit(&d->failure, &d->family, slice, slot, &bond, lane);
+  const double value = d->failure.criterion->measure(&d->failure, &d->family, slice, slot, &bond, lane, limit);
   d->failure.beyond = beyond;
+  return value;
+}
+
+/** Returns E_c / E, the energy of a bond at its limit over its present energy. At rest E exceeds E_c where an
+ *  increment or a crack that runs has carried the bond beyond its limit; the difference is booked as shed. In motion
+ *  returns 1. */
+static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment,
+                         const BrokenBond *broken)
+{
+  if (!moment->most || !d->failure.criterion) return 1;
+  const Bond bond = family_bond(&d->family, slice, slot, lane);
+  const double ratio = broken->limit / broken->value;
+  const double share = !(broken->value > broken->limit) ? 1 : d->failure.criterion->power == 2 ? ratio * ratio : ratio;
   const double weight = d->failure.influence->value(fmin(1, bond.length / d->family.horizon), bond.length) *
                         bond.length * bond.length * d->particles->volume[slice * SLICE + lane] *
                         d->particles->volume[bond.neighbour];
@@ -116,14 +141,18 @@ static void book(Domain *d, double energy, double share)
   d->shed_energy += (1 - share) * energy;
 }
 
-static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment)
+static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment,
+                       BreakCause cause)
 {
   const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
   const int32_t a = number[place], b = number[neighbour];
   const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
   StoredEnergy energy;
   const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
-  const double share = find_share(d, slice, slot, lane, moment);
+  BrokenBond bond = {moment->step, moment->time, a < b ? a : b, a < b ? b : a, cause, NAN, NAN};
+  if (d->failure.criterion) bond.value = breaking_measure(d, slice, slot, lane, &bond.limit);
+  const double share = find_share(d, slice, slot, lane, moment, &bond);
+  if (cause != BREAK_LIMIT) bond.value = bond.limit = NAN;
   if (own->type->bond_energy) {
     own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
     book(d, own->type->face_force ? energy.inside : (their == own ? (inside + beyond) / 2 : inside) * energy.received,
@@ -134,7 +163,7 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
                              neighbour % SLICE, moment->time_step, &energy);
     book(d, their->type->face_force ? energy.inside : beyond * energy.received, share);
   }
-  if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
+  if (domain_record(d, &bond)) {
     d->out_of_memory = true;
     return;
   }
@@ -176,16 +205,16 @@ static int64_t judge(Domain *d, const Moment *moment, Deed deed)
         if (!(f->intact[slot] >> lane & 1)) continue;
         const Bond bond = family_bond(f, s, slot, lane);
         const int32_t place = (int32_t)(s * SLICE + lane);
-        if (!(gave_up && gave_up[place]) &&
-            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, slot, &bond, lane) &&
-              !was_squeezed(d, moment, &bond, place)))
+        const bool law = gave_up && gave_up[place];
+        if (!law && !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, slot, &bond, lane) &&
+                      !was_squeezed(d, moment, &bond, place)))
           continue;
         count += !body_outside(&d->body, d->particles->number[place]);
         if (deed == NOTE_THEM) {
           note_torn(d, place);
           note_torn(d, bond.neighbour);
         }
-        if (deed == BREAK_THEM) break_bond(d, s, slot, lane, bond.neighbour, moment);
+        if (deed == BREAK_THEM) break_bond(d, s, slot, lane, bond.neighbour, moment, law ? BREAK_LAW : BREAK_LIMIT);
       }
   }
   return count;
@@ -234,7 +263,7 @@ static bool break_stranded(Domain *d, const Moment *moment)
           if (kept && kept[s * SLICE + lane] & kept[neighbour]) continue;
           note_late(d, (int32_t)(s * SLICE + lane));
           note_late(d, neighbour);
-          break_bond(d, s, slot, lane, neighbour, moment);
+          break_bond(d, s, slot, lane, neighbour, moment, BREAK_ISOLATED);
         }
   }
   return d->broken_count > before;

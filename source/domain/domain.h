@@ -9,6 +9,8 @@
 #include "formulation/formulation.h"
 #include "loading/load.h"
 
+#include <math.h>
+
 typedef struct Batch { /* slices first .. last - 1, of one region and material, at most BATCH places */
   int64_t first, last;
 } Batch;
@@ -56,11 +58,24 @@ typedef struct Joint {
   JointBond *bonds;
 } Joint;
 
+/** Why a bond broke. */
+typedef enum BreakCause {
+  BREAK_LIMIT,    /* the bond exceeded the limit of the failure criterion */
+  BREAK_LAW,      /* the law of the bond or of an end could not be integrated, and the point carries nothing */
+  BREAK_ISOLATED, /* bonds of the family that broke before left too few for a force */
+  BREAK_CAUSES
+} BreakCause;
+
 typedef struct BrokenBond {
   int64_t step;
   double time;
   int32_t a, b; /* numbers, a < b */
+  BreakCause cause;
+  double value, limit; /* of the criterion, in its dimension; NaN: none, or another cause */
 } BrokenBond;
+
+/** Word for a cause in result files and messages. */
+const char *break_cause_word(BreakCause cause);
 
 /** A step under way. */
 typedef struct Moment {
@@ -257,6 +272,16 @@ int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
 /** Lets no bond break between particles that are marked or stand within a distance of one that is.
  *  @param[in] marked  [places] */
 int domain_keep_within(Domain *domain, const uint8_t *marked, double distance, Error *error);
+/** Returns 0 for round-off beside a whole. */
+static inline double without_rounding(double value, double whole)
+{
+  return fabs(value) < 1e-12 * whole ? 0 : value;
+}
+
+/** Finds the middle of a bond, inside the body: of ends in layers outside of supports their originals count if both ends
+ *  are there, otherwise the end inside alone.
+ *  @param[in] ends  numbers of particles  @param[out] middle  reference position */
+void domain_bond_middle(const Domain *domain, const int32_t ends[2], double middle[3]);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 

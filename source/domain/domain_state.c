@@ -5,11 +5,13 @@
 #include "base/check.h"
 #include "base/tensor.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { NUMBERS_PER_BOND = 4 }; /* step, time and both ends of a broken bond, as saved */
+/** Numbers of a broken bond as saved: step, time, both ends, cause, value and limit; 0 stands for no value or limit. */
+enum { NUMBERS_PER_BOND = 7 };
 
 /** What follows from the bonds of both ends of a broken or mended one. */
 static void renew_ends(Domain *d, const BrokenBond *bond)
@@ -29,8 +31,14 @@ static int64_t save_broken(const void *owner, double **numbers)
   if (!rows) return -1;
   for (int64_t n = 0; n < d->broken_count; ++n) {
     const BrokenBond *bond = &d->broken[n];
-    memcpy(rows + NUMBERS_PER_BOND * n, (const double[]){(double)bond->step, bond->time, bond->a, bond->b},
-           NUMBERS_PER_BOND * sizeof *rows);
+    const double numbers_of[NUMBERS_PER_BOND] = {(double)bond->step,
+                                                 bond->time,
+                                                 bond->a,
+                                                 bond->b,
+                                                 bond->cause,
+                                                 isnan(bond->value) ? 0 : bond->value,
+                                                 isnan(bond->limit) ? 0 : bond->limit};
+    memcpy(rows + NUMBERS_PER_BOND * n, numbers_of, sizeof numbers_of);
   }
   return NUMBERS_PER_BOND * d->broken_count;
 }
@@ -49,7 +57,11 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   d->broken_count = 0;
   for (const double *row = numbers; row < numbers + count; row += NUMBERS_PER_BOND) {
     if (!(row[2] >= 0 && row[2] < particles && row[3] >= 0 && row[3] < particles)) return STATE_MISFIT;
-    const BrokenBond bond = {(int64_t)row[0], row[1], (int32_t)row[2], (int32_t)row[3]};
+    if (!(row[4] >= 0 && row[4] < BREAK_CAUSES)) return STATE_MISFIT;
+    const bool measured = row[4] == BREAK_LIMIT;
+    const BrokenBond bond = {
+        (int64_t)row[0],        row[1], (int32_t)row[2], (int32_t)row[3], (BreakCause)row[4], measured ? row[5] : NAN,
+        measured ? row[6] : NAN};
     if (domain_record(d, &bond)) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
     forces_bond_broke(&d->forces, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
     renew_ends(d, &bond);

@@ -192,11 +192,12 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   return judge(failure, f, slice, slot, bond, lane).exceeds;
 }
 
-static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
-                             int lane)
+static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
+                      double *limit)
 {
   const Judgement of = judge(failure, f, slice, slot, bond, lane);
-  return of.exceeds ? of.limit / of.held : 1;
+  *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
+  return of.limit > 0 ? *limit * of.held / of.limit : 0;
 }
 
 /** Adds the fracture energy behind the limit, and the stretch of which a crack spends as much. */
@@ -231,5 +232,7 @@ const Criterion criterion_critical_energy = {
     .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
-    .share_at_limit = share_at_limit,
+    .measure = measure,
+    .quantity = "bond energy",
+    .power = 1,
 };

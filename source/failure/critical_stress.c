@@ -68,12 +68,12 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   return load_of(failure, f, slice, slot, bond, lane) > 1;
 }
 
-/** The energy of a bond grows with the square of its stress. */
-static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
-                             int lane)
+/** Returns the tension, or the shear by the ratio of the two strengths where the shear is nearer to its strength. */
+static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
+                      double *limit)
 {
-  const double load = load_of(failure, f, slice, slot, bond, lane);
-  return load > 1 ? 1 / (load * load) : 1;
+  *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
+  return isinf(*limit) ? 0 : *limit * load_of(failure, f, slice, slot, bond, lane);
 }
 
 /** Stresses change with every step: bonds are looked at in each. */
@@ -98,5 +98,7 @@ const Criterion criterion_critical_stress = {
     .limits = limits,
     .suspect = suspect,
     .exceeds = exceeds,
-    .share_at_limit = share_at_limit,
+    .measure = measure,
+    .quantity = "tension",
+    .power = 2,
 };

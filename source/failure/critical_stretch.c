@@ -149,16 +149,14 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   return deformed_length(p, place, bond) > (1 + failure_limit(failure, place, bond->neighbour) + freely) * bond->length;
 }
 
-/** The energy of a bond grows with the square of its stretch. */
-static double share_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
-                             int lane)
+static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
+                      double *limit)
 {
   (void)slot;
   const int64_t place = slice * SLICE + lane;
-  const double stretch = deformed_length(f->particles, place, bond) / bond->length - 1 -
-                         particles_free_strain(f->particles, place, bond->neighbour),
-               limit = failure_limit(failure, place, bond->neighbour);
-  return stretch > limit ? limit / stretch * (limit / stretch) : 1;
+  *limit = failure_limit(failure, place, bond->neighbour);
+  return deformed_length(f->particles, place, bond) / bond->length - 1 -
+         particles_free_strain(f->particles, place, bond->neighbour);
 }
 
 static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])
@@ -176,5 +174,7 @@ const Criterion criterion_critical_stretch = {
     .crack_energy = crack_energy,
     .suspect = suspect,
     .exceeds = exceeds,
-    .share_at_limit = share_at_limit,
+    .measure = measure,
+    .quantity = "stretch",
+    .power = 2,
 };

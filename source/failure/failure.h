@@ -74,9 +74,12 @@ typedef struct Criterion {
   /** True if this bond exceeds it. */
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                   int lane);
-  /** Returns the energy of a bond at its limit over the energy that the bond holds, 1 at most. NULL: unknown. */
-  double (*share_at_limit)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
-                           int lane);
+  /** Returns the value of a bond that the criterion compares with a limit, both in `dimension`.
+   *  @param[out] limit  infinite for bonds that never break */
+  double (*measure)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
+                    int lane, double *limit);
+  const char *quantity; /* name of the value */
+  int power;            /* the energy of a bond grows with the value to this power */
 } Criterion;
 
 /** @return the k-th criterion, or NULL after the last */

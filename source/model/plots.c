@@ -12,14 +12,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/** The result file named or in the folder named. To be freed. */
-static char *result_path(const char *given)
-{
-  struct stat status;
-  if (!stat(given, &status) && S_ISDIR(status.st_mode)) return text_format("%s/results.vtkhdf", given);
-  return text_format("%s", given);
-}
-
 /** A .png file in the folder of pictures beside a result file. To be freed. */
 static char *in_pictures(const char *result, const char *name)
 {
@@ -237,7 +229,7 @@ typedef enum Kind { STATES, MOVIE, OVER_LENGTH } Kind;
 static int draw_results(const char *result, const breccia_plot *plot, Kind kind, Error *error)
 {
   ResultView view;
-  char *path = result_path(result);
+  char *path = result_view_path(result);
   int status = path ? result_view_open(&view, path, error) : BRECCIA_FAILURE;
   if (!status && view.steps == 0) {
     status = error_add(error, BRECCIA_USER_ERROR, "%s: holds no step yet", path);
@@ -308,7 +300,7 @@ static char *curve_path(const char *const *folders, int count, const char *curve
 static void find_title(const char *folder, char *title, size_t size)
 {
   ResultView view;
-  char *path = result_path(folder);
+  char *path = result_view_path(folder);
   Error *ignored = breccia_error_create();
   if (path && !result_view_open(&view, path, ignored)) {
     snprintf(title, size, "%s", view.title);

@@ -47,26 +47,51 @@ static void add_origin(const breccia_model *model, Text *t)
   text_add(t, "},\n");
 }
 
-/** 0 for what is a rounding beside a whole. */
-static double without_rounding(double value, double whole)
-{
-  return fabs(value) < 1e-12 * whole ? 0 : value;
-}
-
-/** The bond that broke first, and a place near it inside of the body; NULL if none did.
- *  @param[out] middle  that of its ends; of ends outside of the body their originals count if both are there, else
- *  the end inside alone */
+/** Returns the bond that broke first; NULL if none did. @param[out] middle  of the bond, inside the body */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
   if (!d->broken_count) return NULL;
   const BrokenBond *bond = &d->broken[0];
-  const bool outside[2] = {body_outside(&d->body, bond->a), body_outside(&d->body, bond->b)};
-  int64_t ends[2] = {outside[0] && !outside[1] ? bond->b : bond->a, outside[1] && !outside[0] ? bond->a : bond->b};
-  for (int k = 0; k < 2; ++k) ends[k] = body_original(&d->body, ends[k]);
-  const int32_t a = d->particles->place_of[ends[0]], b = d->particles->place_of[ends[1]];
-  for (int k = 0; k < 3; ++k)
-    middle[k] = without_rounding((d->particles->position[k][a] + d->particles->position[k][b]) / 2, d->family.horizon);
+  domain_bond_middle(d, (const int32_t[]){bond->a, bond->b}, middle);
   return bond;
+}
+
+/** Adds the bond that broke first with its cause, or null. */
+static void add_first_broken(const breccia_model *model, Text *text)
+{
+  const Domain *d = &model->domain;
+  const Criterion *criterion = d->failure.criterion;
+  double x[3];
+  char unit[64] = "";
+  const BrokenBond *first = first_broken(d, x);
+  if (!first) {
+    text_add(text, "  \"first_broken_bond\": null,\n");
+    return;
+  }
+  text_add(text,
+           "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, "
+           "%.10g, %.10g], \"cause\": \"%s\", ",
+           (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2], break_cause_word(first->cause));
+  if (first->cause != BREAK_LIMIT) {
+    text_add(text, "\"value\": null, \"limit\": null, \"unit\": \"\"},\n");
+    return;
+  }
+  if (criterion->dimension) units_name(model->units, dimension_find(criterion->dimension), unit, sizeof unit);
+  text_add(text, "\"value\": %.10g, \"limit\": %.10g, \"unit\": \"%s\"},\n", first->value, first->limit, unit);
+}
+
+/** Adds how many bonds broke from other causes than the limit of the criterion, if any did. */
+static void add_other_causes(const Domain *d, const char *folder, Text *text)
+{
+  int64_t counts[BREAK_CAUSES] = {0};
+  for (int64_t n = 0; n < d->broken_count; ++n) ++counts[d->broken[n].cause];
+  if (counts[BREAK_LAW])
+    text_add(text, "%lld bonds broke because the law of their point, or of an end, found no stress\n",
+             (long long)counts[BREAK_LAW]);
+  if (counts[BREAK_ISOLATED])
+    text_add(text, "%lld bonds broke because too few bonds were left at one of their ends\n",
+             (long long)counts[BREAK_ISOLATED]);
+  if (counts[BREAK_LAW] || counts[BREAK_ISOLATED]) text_add(text, "'breccia why %s' lists them\n", folder);
 }
 
 /** Increments that are not followed, but jumped over. */
@@ -221,16 +246,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   add_jumps(s, &t);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
-  double x[3];
-  const BrokenBond *first = first_broken(d, x);
-  if (first)
-    text_add(
-        &t,
-        "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
-        "%.10g]},\n",
-        (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2]);
-  else
-    text_add(&t, "  \"first_broken_bond\": null,\n");
+  add_first_broken(model, &t);
   text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
   const struct {
     const char *key;
@@ -443,6 +459,7 @@ void run_tell_outcome(Run *run, int status)
         "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
         (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
         (long long)d->family.bonds / 2);
+    if (run->wish->folder) add_other_causes(d, run->wish->folder, t);
     toughness_describe(d, model->spec->failure, model->units, t);
   } else if (d->failure.criterion) {
     text_add(t, "no bond broke\n");

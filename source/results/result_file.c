@@ -7,6 +7,7 @@
 #include "base/team.h"
 #include "base/whole_file.h"
 #include "results/bar_states.h"
+#include "results/broken_bonds.h"
 #include "results/dataset.h"
 #include "results/hdf5_file.h"
 #include "results/journal.h"
@@ -193,7 +194,7 @@ static int write_particles(hid_t root, hid_t own, const Domain *d, Geometry *g, 
   return bad | dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, at, rows, g->lattice);
 }
 
-static int write_geometry(hid_t root, const Domain *d)
+static int write_geometry(hid_t root, const Domain *d, const Units *units)
 {
   const Particles *p = d->particles;
   Geometry *geometry = memory_plain(1, sizeof *geometry);
@@ -206,7 +207,7 @@ static int write_geometry(hid_t root, const Domain *d)
   bad |= attribute_text(own, ".", "version", BRECCIA_VERSION);
   bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
   bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
-  bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
+  bad |= broken_bonds_create(own, d, units);
   if (d->body.margin_of) bad |= dataset_create(own, "Outside", H5T_STD_U8LE, 1, 4096);
   bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
   for (int64_t first = 0; first < p->count && !bad; first += ROWS_AT_ONCE)
@@ -289,7 +290,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     int64_t version[2] = {2, 0};
     bad |= attribute_numbers(root, "Version", H5T_NATIVE_INT64, 2, version);
     bad |= attribute_text(root, ".", "Type", "PolyData");
-    bad |= write_geometry(root, d);
+    bad |= write_geometry(root, d, units);
     bad |= write_cells(root, file->particles);
     const hsize_t column[2] = {(hsize_t)file->particles, 1};
     bad |= dataset_view(h5.id, "/Breccia/Particles", h5.id, "/VTKHDF/Vertices/Connectivity", 0, 2, column);
@@ -410,25 +411,15 @@ static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
   double *values = memory_plain(2 * CHUNKS_AT_ONCE * CHUNK_BYTES, 1); /* twice: where chunks have single precision */
   int bad = !values || root < 0 || data < 0;
   for (int c = 0; c < file->column_count && !bad; ++c) bad = write_column(data, file, d, &file->columns[c], values);
-  int64_t fresh = d->broken_count - file->broken_written, *rows = memory_plain((size_t)fresh * 3 + 3, sizeof(int64_t));
-  if (!values || !rows) h5->error = ENOMEM;
-  bad |= !rows;
-  for (int64_t k = 0; !bad && k < fresh; ++k) {
-    const BrokenBond *bond = &d->broken[file->broken_written + k];
-    rows[3 * k] = bond->step;
-    rows[3 * k + 1] = bond->a;
-    rows[3 * k + 2] = bond->b;
-  }
+  if (!values) h5->error = ENOMEM;
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
-  bad = bad ||
-        dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
+  bad = bad || broken_bonds_write(own, d, file->broken_written);
   bad = bad || bar_states_write(own, d, file->writes - 1);
   bad = bad || create_state(h5->id, file, file->writes - 1);
   bad = bad || H5Fflush(h5->id, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
   if (own >= 0 && H5Gclose(own) < 0) bad = 1;
   if (data >= 0 && H5Gclose(data) < 0) bad = 1;
   if (root >= 0 && H5Gclose(root) < 0) bad = 1;
-  free(rows);
   free(values);
   return bad;
 }
@@ -499,7 +490,7 @@ static int cut(ResultFile *file, Hdf5File *h5, const Domain *d)
     bad |= dataset_write(data, file->columns[c].name, H5T_NATIVE_DOUBLE, file->columns[c].components,
                          (hsize_t)(file->writes * file->particles), 0, NULL);
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
-  bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
+  bad |= broken_bonds_cut(own, file->broken_written);
   bad |= bar_states_cut(own, d, file->writes);
   if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
   hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);

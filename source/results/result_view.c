@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void attribute_read_text(hid_t where, const char *name, char *words, size_t size)
@@ -66,6 +67,15 @@ void *result_view_numbers(const ResultView *view, const char *name, hid_t type, 
   return values;
 }
 
+void result_view_words(const ResultView *view, const char *dataset, const char *attribute, char *words, size_t size)
+{
+  const hid_t set = H5Dopen2(view->file.id, dataset, H5P_DEFAULT);
+  *words = 0;
+  if (set < 0) return;
+  attribute_read_text(set, attribute, words, size);
+  H5Dclose(set);
+}
+
 /** Which lattice each particle stands on: numbers in a list of names. Files of earlier versions tell none: square, as cells of cubic ones are
  *  seen too. */
 static int read_lattices(ResultView *view, Error *error)
@@ -79,9 +89,7 @@ static int read_lattices(ResultView *view, Error *error)
   view->lattice_numbers = result_view_numbers(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
   if (!view->lattice_numbers) return result_view_lost(view);
   char names[512];
-  hid_t set = H5Dopen2(view->file.id, "Breccia/Lattice", H5P_DEFAULT);
-  attribute_read_text(set, "names", names, sizeof names);
-  H5Dclose(set);
+  result_view_words(view, "Breccia/Lattice", "names", names, sizeof names);
   int k = 0;
   for (char *rest = names, *name; k < MOST_LATTICES && (name = strtok_r(rest, ";", &rest)); ++k)
     if (lattice_find(name)) view->lattice_types[k] = lattice_find(name);
@@ -200,6 +208,13 @@ static int finish_rest(const char *path, Error *error)
   breccia_error_destroy(&ignored);
   free(folder);
   return status;
+}
+
+char *result_view_path(const char *result)
+{
+  struct stat status;
+  const bool folder = !stat(result, &status) && S_ISDIR(status.st_mode);
+  return text_format(folder ? "%s/results.vtkhdf" : "%s", result);
 }
 
 int result_view_open(ResultView *view, const char *path, Error *error)

@@ -30,6 +30,8 @@ typedef struct ResultView {
   char title[256], length_unit[64], time_unit[64];
 } ResultView;
 
+/** Returns the path of a result file, given itself or as its folder; to be freed. NULL: out of memory. */
+char *result_view_path(const char *result);
 /** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged, BRECCIA_FAILURE where the disk fails */
 int result_view_open(ResultView *view, const char *path, Error *error);
 /** Reads every dataset once. @return as above, after a line that names one that is not as it was written */
@@ -49,6 +51,8 @@ const LatticeType *result_view_lattice(const ResultView *view, int64_t particle)
 void result_view_fields(const ResultView *view, Text *names);
 /** Whether the file holds a field of this name, be it damaged. */
 bool result_view_has(const ResultView *view, const char *field);
+/** Reads an attribute of a dataset as text; "" if there is none. */
+void result_view_words(const ResultView *view, const char *dataset, const char *attribute, char *words, size_t size);
 /** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field or it is damaged.
  *  @param[out] unit  64 bytes */
 double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,

@@ -27,7 +27,7 @@ else
   grep -E "lib(cholmod|umfpack|klu|spqr)" linked && fail "the command is linked with a library under the GPL"
 fi
 "$breccia" --help > out; equal "help: status" $? 0
-for verb in run check modes new plot spectrum models material calibrate schema completion; do
+for verb in run check modes new plot why spectrum models material calibrate schema completion; do
   contains "help" "$(cat out)" "  $verb "
   "$breccia" $verb --help > verb 2>&1; equal "$verb --help: status" $? 0
   contains "$verb --help" "$(cat verb)" "usage: breccia $verb"

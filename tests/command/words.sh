@@ -472,7 +472,7 @@ s=pull/summary.json
 near "pull: fracture" "$(figures $s fracture)" 15 0.01
 near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
 near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
-contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0]}'
+contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0], "cause": "limit", "value": 0.001, "limit": 0.001, "unit": ""}'
 grep -q "cannot crush" out && fail "what was never pressed is told: $(cat out)"
 # ---- a bar of four bonds that is pressed by 0.04 mm: E times 0.001, and nothing crushes it ----
 sed -e 's/elastic-1d/exponential-softening, tensile strength: 3 MPa, fracture energy: 100 N\/m/; s/particles: .2, 1./particles: [5, 1]/; /^failure/d' \

@@ -127,6 +127,8 @@ def groups_of_summary(path):
                     groups[f"{name}/{item['material']}"] = Group("number", units["stresses"], [[item["compression"]]], where, 10)
                 else:
                     walk(f"{name}/{n}", key, item, parent)
+        elif parent == "first_broken_bond" and key in ("value", "limit"):
+            groups[name] = Group("number", summary["first_broken_bond"]["unit"], [[float(value)]], where, 10)
         elif key != "particles" or parent != "first_broken_bond":
             unit = units["energies"] if parent == "energy" and key != "imbalance" else units[SUMMARY_UNITS[key.replace("peak ", "")]] if key.replace("peak ", "") in SUMMARY_UNITS else ""
             numbers = value if isinstance(value, list) else [value]

@@ -1,0 +1,41 @@
+/* Broken bonds in result files: which ones, when, where and why.
+ *
+ * Group Breccia of a file holds two datasets with one row for each broken bond, in the order in which the bonds broke:
+ *   BrokenBonds        [count][3] step and numbers of both particles
+ *   BrokenBondReasons  [count][7] time, cause, value, limit, position x, y, z (middle of the bond, inside the body)
+ * Value and limit are those of the failure criterion and NaN for other causes. Attributes of BrokenBondReasons name the
+ * columns, the causes, the criterion, its value and the unit. */
+#ifndef BRECCIA_RESULTS_BROKEN_BONDS_H
+#define BRECCIA_RESULTS_BROKEN_BONDS_H
+
+#include "deck/quantity.h"
+#include "domain/domain.h"
+#include "results/result_view.h"
+
+/** Creates both datasets without rows. @param[in] own  group Breccia @return 0, or 1 when HDF5 refuses */
+int broken_bonds_create(hid_t own, const Domain *domain, const Units *units);
+/** Writes the broken bonds of a domain from number `first` on. @return 0, or 1 when HDF5 refuses or memory is out */
+int broken_bonds_write(hid_t own, const Domain *domain, int64_t first);
+/** Cuts both datasets to `count` rows. @return 0, or 1 when HDF5 refuses */
+int broken_bonds_cut(hid_t own, int64_t count);
+
+/** One broken bond of a result file. */
+typedef struct BondReason {
+  int64_t step, particles[2]; /* particles: numbers as written, layers outside of supports included */
+  double time, value, limit, position[3];
+  BreakCause cause;
+} BondReason;
+
+/** Broken bonds of a result file with the words of its attributes. */
+typedef struct BondReasons {
+  int64_t count;
+  BondReason *bonds; /* [count] owned */
+  char criterion[64], quantity[64], unit[64];
+} BondReasons;
+
+/** Reads the broken bonds of an open file. The caller calls broken_bonds_destroy also after a failure.
+ *  @return BRECCIA_OK; BRECCIA_USER_ERROR for damaged files and files without reasons, after a message */
+int broken_bonds_read(const ResultView *view, BondReasons *reasons, Error *error);
+void broken_bonds_destroy(BondReasons *reasons);
+
+#endif
