@@ -7,10 +7,40 @@
 /** Two motions of one particle must be at right angles, or they contradict each other. */
 int constraints_check(const Loading *loading, const Particles *particles, const DeckReader *reader);
 
+/** Returns true if a platen is one-sided and has let go, so that its centre moves freely. */
+static inline bool constraint_is_loose(const Constraint *constraint)
+{
+  return constraint->platen && constraint->one_sided && constraint->one_sided->open[0];
+}
+/** Returns true if a constraint is one-sided and has let go of its n-th particle, which is free then. */
+static inline bool constraint_is_open(const Constraint *constraint, int64_t n)
+{
+  return constraint->one_sided && !constraint->platen && constraint->one_sided->open[n];
+}
+/** Returns the number of particles that lead those of a platen; 0 without a platen. */
+static inline int constraint_leaders(const Constraint *constraint)
+{
+  return constraint->platen ? constraint->platen->leaders + constraint_is_loose(constraint) : 0;
+}
+/** Returns the share of the m-th leader of a platen in the motion of its n-th particle. */
+static inline double constraint_share(const Constraint *constraint, int m, int64_t n)
+{
+  const Platen *platen = constraint->platen;
+  return constraint_is_loose(constraint) ? platen->loose[m][n] : platen->share[m][n];
+}
 /** What the n-th particle of a constraint does of what is told of all. */
 static inline double constraint_part(const Constraint *constraint, int64_t n)
 {
+  if (constraint_is_loose(constraint)) return 0;
   return constraint->part ? constraint->part[n] : 1;
+}
+/** Returns where the n-th particle stood along the direction when the load began, besides what it follows. */
+static inline double constraint_from(const Constraint *constraint, int64_t n)
+{
+  if (!constraint->from) return 0;
+  if (!constraint_is_loose(constraint)) return constraint->from[n];
+  const Platen *platen = constraint->platen;
+  return constraint->from[n] - platen->loose[platen->leaders][n] * constraint->from[platen->leader[platen->leaders]];
 }
 /** The part of a place's motion along the direction of a constraint. @param[in] v  rows of motion */
 static inline double constraint_along(const Constraint *constraint, double *const *v, int32_t place)
@@ -29,8 +59,9 @@ static inline void constraint_add(const Constraint *constraint, double *const *v
 /** Returns true if the motion of the n-th particle is free and leads those of a platen. */
 static inline bool constraint_leads(const Constraint *constraint, int64_t n)
 {
-  const Platen *platen = constraint->platen;
-  return platen && (n == platen->leader[0] || (platen->leaders > 1 && n == platen->leader[1]));
+  for (int m = 0; m < constraint_leaders(constraint); ++m)
+    if (constraint->platen->leader[m] == n) return true;
+  return false;
 }
 /** The particle that leads the m-th share of a platen. */
 static inline int32_t constraint_leader(const Constraint *constraint, int m)
@@ -43,8 +74,8 @@ static inline double constraint_followed(const Constraint *constraint, double *c
 {
   double sum = 0;
   if (constraint->images) sum += constraint->share * constraint_along(constraint, v, constraint->images[n]);
-  for (int m = 0; constraint->platen && m < constraint->platen->leaders; ++m)
-    sum += constraint->platen->share[m][n] * constraint_along(constraint, v, constraint_leader(constraint, m));
+  for (int m = 0; m < constraint_leaders(constraint); ++m)
+    sum += constraint_share(constraint, m, n) * constraint_along(constraint, v, constraint_leader(constraint, m));
   return sum;
 }
 /** Returns true if the motion of particles follows from that of others. */

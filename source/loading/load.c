@@ -14,7 +14,7 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-enum { OTHERS = 6 }; /* keys that all loads have */
+enum { OTHERS = 7 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
     {.key = "name",
@@ -61,6 +61,14 @@ static const Field load_fields[] = {
                 "narrower than the body, that moves and to no particle of which another motion is prescribed. fixed: "
                 "all particles move alike, and the plate takes a moment",
      .words = (const char *const[]){"turning", "fixed", NULL}},
+    {.key = "only presses",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(LoadSpec, only_presses),
+     .standard = "no",
+     .meaning = "yes: of a motion prescribed in one direction, a roller, or a spring with a direction: it pushes the "
+                "body away from the face where 'on' stands, lets go where it would pull, and presses again when the "
+                "body comes back. Each particle lets go by itself; a platen that turns lets go as a whole, and its "
+                "plate stays on the body"},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \
    .kind = form,                                                                                                       \
@@ -105,6 +113,11 @@ static void check_load(const DeckReader *reader, void *section)
   if (load->platen && !types[k]->platen)
     node_error(reader->document, section_node(load, "platen"), reader->error,
                "platen: only of a prescribed displacement, velocity or acceleration, or of 'along'");
+  if (load->only_presses && !types[k]->may_press)
+    node_error(reader->document, section_node(load, "only presses"), reader->error,
+               "only presses: only of a prescribed displacement, velocity or acceleration, of 'along', a 'roller' or a "
+               "'spring'%s",
+               k == LOAD_support ? "; hold the outermost layer by a 'roller' instead of mirror images" : "");
 }
 
 const Section load_section = {

@@ -31,6 +31,7 @@ typedef struct LoadSpec {
   HistorySpec *history;
   double area;
   const char *spread, *platen;
+  bool only_presses;
 } LoadSpec;
 
 extern const Section load_section;
@@ -71,16 +72,37 @@ typedef struct Load {
   void *own; /* what the type keeps */
 } Load;
 
+enum { MAX_LEADERS = 3 };
+
 /** A rigid plate on the particles of a load that turns freely about its centre (loading/platen.h). The motion along the
  *  direction of the constraint is
  *    u_i = (1 - sum_m S_im) U + sum_m S_im u_m
- *  with the prescribed motion U of the centre and the free motions u_m of one leading particle, in space of two. */
+ *  with the prescribed motion U of the centre and the free motions u_m of one leading particle, in space of two. While
+ *  a load that only presses has let go, U is free too, and one more particle leads. */
 typedef struct Platen {
-  int leaders;
-  int64_t leader[2]; /* index among the particles of the load */
-  double *share[2];  /* [particles of the load] S_im. Owned */
-  double given;      /* acceleration of the centre at the end of the last step */
+  int leaders; /* while U is prescribed */
+  /** Indices among the particles of the load; the one behind `leaders` leads once U is free. */
+  int64_t leader[MAX_LEADERS];
+  double *share[2];           /* [particles of the load] S_im. Owned */
+  double *loose[MAX_LEADERS]; /* [particles of the load] S_im once U is free; NULL: it never is. Owned */
+  double given;               /* acceleration of the centre at the end of the last step */
+  /** Change of velocity of the centre that strikes in the explicit step under way, in all and at its end; 0: none. */
+  double strikes, still;
+  bool opens; /* it has let go in the explicit step under way */
+  /** It closes in the implicit step under way, with these motions of its centre at the end by the scheme. */
+  bool closes;
+  double velocity, acceleration;
 } Platen;
+
+/** What makes a constraint one-sided: it holds while it presses on the body and lets go where it would pull
+ *  (loading/one_sided.h). A platen lets go as a whole and has one entry, else each particle has its own. */
+typedef struct OneSided {
+  int64_t count;   /* of entries */
+  double pushes;   /* 1 or -1: along the direction of the constraint or against it */
+  uint8_t *open;   /* [count] 1: it has let go. Owned */
+  double *presses; /* [count] force with which it presses at the last equilibrium or implicit step. Owned */
+  double *found;   /* [count] the same at the last evaluation of forces; negative where it pulls. Owned */
+} OneSided;
 
 /** Motions prescribed to the particles of a load: u . direction = from + value times the history, or its integral, + share of that of
  *  another particle. */
@@ -97,6 +119,7 @@ typedef struct Constraint {
   double share;          /* 1 or -1 */
   double *moved;         /* [particles of the load] in the step under way; with images or a platen only. Owned */
   Platen *platen;        /* NULL: the particles do not turn. Owned */
+  OneSided *one_sided;   /* NULL: it presses and pulls. Owned */
 } Constraint;
 
 /** Particles whose motions along an axis are one. */
@@ -156,6 +179,7 @@ struct LoadType {
   bool lasting;    /* it acts from the first stage to the last */
   bool goes_on;    /* its forces were there before it began */
   bool platen;     /* a platen may stand between what it prescribes and its particles */
+  bool may_press;  /* it may be one that only presses */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
   void (*destroy)(Load *load);

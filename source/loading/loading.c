@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/one_sided.h"
 #include "loading/platen.h"
 #include "loading/tie.h"
 #include <math.h>
@@ -92,6 +93,7 @@ int loading_create(const LoadMaking *making, const SectionList *loads, const Loa
   if (!status) status = check_lasting(loading, reader);
   if (!status) status = constraints_check(loading, particles, reader);
   if (!status) status = platens_create(making);
+  if (!status) status = one_sided_create(making);
   return status ? status : ties_check(loading, particles, reader);
 }
 
@@ -103,6 +105,7 @@ void loading_destroy(Loading *loading)
     free(loading->constraints[c].moved);
     free(loading->constraints[c].part);
     platen_destroy(loading->constraints[c].platen);
+    one_sided_destroy(loading->constraints[c].one_sided);
   }
   free(loading->loads);
   free(loading->constraints);
@@ -192,7 +195,9 @@ void loading_begin(Loading *loading, Particles *p, double time)
   for (int c = 0; c < loading->constraint_count; ++c) {
     const Constraint *constraint = &loading->constraints[c];
     const Selection *selection = &constraint->load->selection;
-    if (constraint->load->first != loading->stage || !constraint->from) continue;
+    if (constraint->load->first != loading->stage) continue;
+    one_sided_close(constraint);
+    if (!constraint->from) continue;
     for (int64_t n = 0; n < selection->count; ++n) {
       constraint->from[n] = 0;
       for (int k = 0; k < 3; ++k) {
@@ -243,6 +248,8 @@ void loading_state(Loading *loading, StateList *list)
       snprintf(name, sizeof name, "motion %d accelerates", c);
       state_add_number(list, name, "acceleration", STATE_TRIED, &constraint->platen->given);
     }
+    snprintf(name, sizeof name, "motion %d", c);
+    one_sided_state(constraint, name, list);
     if (!constraint->from) continue;
     snprintf(name, sizeof name, "motion %d begins", c);
     state_add(list,

@@ -135,7 +135,7 @@ static int platen_create(Constraint *c, const Body *body, Error *error)
   if (!platen_can_turn(c, body)) return BRECCIA_OK;
   Platen *q = c->platen = memory_zeroed(1, sizeof *q, "platens", error);
   if (!q) return BRECCIA_FAILURE;
-  *q = (Platen){.leaders = 1, .leader = {leader, -1}};
+  *q = (Platen){.leaders = 1, .leader = {leader, -1, -1}};
   for (int k = 0; k < 3; ++k) first[k] /= length;
   const int64_t other = platen_farthest(s, p, centre, c->direction, first, second);
   if (platen_length(second) > platen_flat * length) {
@@ -269,22 +269,102 @@ void platen_destroy(Platen *platen)
 {
   if (!platen) return;
   for (int m = 0; m < 2; ++m) free(platen->share[m]);
+  for (int m = 0; m < MAX_LEADERS; ++m) free(platen->loose[m]);
   free(platen);
 }
 
-/** Divides generalised forces on the leaders, or momenta, by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
-static void platen_accelerate(const Constraint *c, const Particles *p, const double force[2], double acceleration[2])
+/* ---- a centre that is free ---- */
+
+int platen_loosen(const Constraint *c, Error *error)
+{
+  const double nearly = 1 + 1e-9;
+  Platen *q = c->platen;
+  const int last = q->leaders;
+  const int64_t count = c->load->selection.count;
+  double most = 0;
+  for (int64_t n = 0; n < count; ++n) {
+    if (!(fabs(c->part[n]) > nearly * most)) continue;
+    most = fabs(c->part[n]);
+    q->leader[last] = n;
+  }
+  for (int m = 0; m <= last; ++m)
+    if (!(q->loose[m] = memory_zeroed((size_t)count, sizeof(double), "platens", error))) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < count; ++n) {
+    const double ratio = c->part[n] / c->part[q->leader[last]];
+    q->loose[last][n] = ratio;
+    for (int m = 0; m < last; ++m) q->loose[m][n] = q->share[m][n] - ratio * q->share[m][q->leader[last]];
+  }
+  return BRECCIA_OK;
+}
+
+double platen_centre_rate(const Constraint *c, double *const *v)
 {
   const Platen *q = c->platen;
+  const int64_t n = q->leader[q->leaders];
+  double moved = constraint_along(c, v, c->load->selection.places[n]);
+  for (int m = 0; m < q->leaders; ++m) moved -= q->share[m][n] * constraint_along(c, v, constraint_leader(c, m));
+  return moved / c->part[n];
+}
+
+double platen_centre_displacement(const Constraint *c, double *const *u)
+{
+  const int64_t n = c->platen->leader[c->platen->leaders];
+  return platen_centre_rate(c, u) - (c->from ? c->from[n] / c->part[n] : 0);
+}
+
+double platen_centre_force(const Constraint *c, double *const *f)
+{
+  double sum = 0;
+  for (int64_t n = 0; n < c->load->selection.count; ++n)
+    sum += c->part[n] * constraint_along(c, f, c->load->selection.places[n]);
+  return sum;
+}
+
+void platen_add_centre_force(const Constraint *c, double *const *f, double force)
+{
+  const Platen *q = c->platen;
+  const int64_t n = q->leader[q->leaders];
+  const double along = force / c->part[n];
+  constraint_add(c, f, c->load->selection.places[n], along);
+  for (int m = 0; m < q->leaders; ++m) constraint_add(c, f, constraint_leader(c, m), -q->share[m][n] * along);
+}
+
+/* ---- motion ---- */
+
+/** Solves a symmetric positive definite system of equations by Gaussian elimination. */
+static void platen_solve(int count, double matrix[MAX_LEADERS][MAX_LEADERS], double right[MAX_LEADERS])
+{
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) {
+      const double factor = matrix[b][a] / matrix[a][a];
+      for (int k = a; k < count; ++k) matrix[b][k] -= factor * matrix[a][k];
+      right[b] -= factor * right[a];
+    }
+  for (int a = count - 1; a >= 0; --a) {
+    for (int k = a + 1; k < count; ++k) right[a] -= matrix[a][k] * right[k];
+    right[a] /= matrix[a][a];
+  }
+}
+
+/** Divides generalised forces on the leaders, or momenta, by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
+static void platen_accelerate(const Constraint *c, const Particles *p, const double force[MAX_LEADERS],
+                              double acceleration[MAX_LEADERS])
+{
+  const int leaders = constraint_leaders(c);
   const Selection *s = &c->load->selection;
-  double mass[2][2] = {{0}};
+  double mass[MAX_LEADERS][MAX_LEADERS] = {{0}};
   for (int64_t n = 0; n < s->count; ++n) {
     const double own = p->density[s->places[n]] * p->volume[s->places[n]];
-    for (int a = 0; a < q->leaders; ++a)
-      for (int b = 0; b < q->leaders; ++b) mass[a][b] += own * q->share[a][n] * q->share[b][n];
+    for (int a = 0; a < leaders; ++a)
+      for (int b = 0; b < leaders; ++b) mass[a][b] += own * constraint_share(c, a, n) * constraint_share(c, b, n);
   }
-  if (q->leaders == 1) {
+  if (leaders == 1) {
     acceleration[0] = force[0] / mass[0][0];
+    return;
+  }
+  if (leaders > 2) {
+    for (int m = 0; m < leaders; ++m) acceleration[m] = force[m];
+    platen_solve(leaders, mass, acceleration);
     return;
   }
   const double determinant = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0];
@@ -294,37 +374,66 @@ static void platen_accelerate(const Constraint *c, const Particles *p, const dou
 
 void platen_start(const Constraint *c, const Particles *p, double time, double step)
 {
-  const Platen *q = c->platen;
   const Selection *s = &c->load->selection;
   const double given = constraint_velocity(c, time, step);
-  double momentum[2] = {0}, velocity[2];
+  double momentum[MAX_LEADERS] = {0}, velocity[MAX_LEADERS];
   for (int64_t n = 0; n < s->count; ++n) {
     const int32_t i = s->places[n];
-    const double along = p->density[i] * p->volume[i] * (constraint_along(c, p->velocity, i) - c->part[n] * given);
-    for (int m = 0; m < q->leaders; ++m) momentum[m] += q->share[m][n] * along;
+    const double along =
+        p->density[i] * p->volume[i] * (constraint_along(c, p->velocity, i) - constraint_part(c, n) * given);
+    for (int m = 0; m < constraint_leaders(c); ++m) momentum[m] += constraint_share(c, m, n) * along;
   }
   platen_accelerate(c, p, momentum, velocity);
-  for (int m = 0; m < q->leaders; ++m) {
+  for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
     constraint_add(c, p->velocity, i, velocity[m] - constraint_along(c, p->velocity, i));
   }
 }
 
-void platen_push(const Constraint *c, Particles *p, double time)
+/** Finds the accelerations of the leaders by the forces on all particles and the motion of the centre. */
+static void platen_find_accelerations(const Constraint *c, const Particles *p, double acceleration[MAX_LEADERS])
 {
-  Platen *q = c->platen;
+  const Platen *q = c->platen;
   const Selection *s = &c->load->selection;
-  const double step = 2 * c->load->motion.lag; /* none where forces are found again for a state that was restored */
-  if (step > 0) q->given = constraint_acceleration(c, time, step);
-  double force[2] = {0}, acceleration[2];
+  double force[MAX_LEADERS] = {0};
   for (int64_t n = 0; n < s->count; ++n) {
     const int32_t i = s->places[n];
     const double along = p->volume[i] * (constraint_along(c, p->internal, i) + constraint_along(c, p->external, i) -
-                                         p->density[i] * c->part[n] * q->given);
-    for (int m = 0; m < q->leaders; ++m) force[m] += q->share[m][n] * along;
+                                         p->density[i] * constraint_part(c, n) * q->given);
+    for (int m = 0; m < constraint_leaders(c); ++m) force[m] += constraint_share(c, m, n) * along;
   }
   platen_accelerate(c, p, force, acceleration);
-  for (int m = 0; m < q->leaders; ++m) {
+}
+
+/** Returns true if a platen that moves as prescribed with these accelerations of the leaders pulls at its particles. */
+static bool platen_pulls(const Constraint *c, const Particles *p, const double acceleration[MAX_LEADERS])
+{
+  const Platen *q = c->platen;
+  const Selection *s = &c->load->selection;
+  double sum = 0;
+  for (int64_t n = 0; n < s->count; ++n) {
+    const int32_t i = s->places[n];
+    double moved = c->part[n] * q->given;
+    for (int m = 0; m < q->leaders; ++m) moved += q->share[m][n] * acceleration[m];
+    sum += c->part[n] * p->volume[i] *
+           (p->density[i] * moved - constraint_along(c, p->internal, i) - constraint_along(c, p->external, i));
+  }
+  return c->one_sided->pushes * sum < 0;
+}
+
+void platen_push(const Constraint *c, Particles *p, double time)
+{
+  Platen *q = c->platen;
+  const double step = 2 * c->load->motion.lag; /* none where forces are found again for a state that was restored */
+  if (step > 0) q->given = constraint_acceleration(c, time, step);
+  double acceleration[MAX_LEADERS];
+  platen_find_accelerations(c, p, acceleration);
+  if (c->one_sided && !c->one_sided->open[0] && platen_pulls(c, p, acceleration)) {
+    c->one_sided->open[0] = 1;
+    q->opens = step > 0;
+    platen_find_accelerations(c, p, acceleration);
+  }
+  for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
     constraint_add(c, p->external, i,
                    p->density[i] * acceleration[m] - constraint_along(c, p->internal, i) -
@@ -334,14 +443,13 @@ void platen_push(const Constraint *c, Particles *p, double time)
 
 void platen_share_mass(const Constraint *c, const Particles *p, double *const acceleration[MOTIONS])
 {
-  const Platen *q = c->platen;
-  double force[2] = {0}, shared[2];
-  for (int m = 0; m < q->leaders; ++m) {
+  double force[MAX_LEADERS] = {0}, shared[MAX_LEADERS];
+  for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
     force[m] = p->density[i] * p->volume[i] * constraint_along(c, acceleration, i);
   }
   platen_accelerate(c, p, force, shared);
-  for (int m = 0; m < q->leaders; ++m) {
+  for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
     constraint_add(c, acceleration, i, shared[m] - constraint_along(c, acceleration, i));
   }

@@ -19,6 +19,21 @@
  *          are prescribed; BRECCIA_FAILURE: no memory */
 int platens_create(const LoadMaking *making);
 void platen_destroy(Platen *platen);
+/** Finds the shares with which its particles move while the centre is free, with one more leader k of
+ *    u_k = (1 - sum_m S_km) U + sum_m S_km u_m.
+ *  @return BRECCIA_OK, or BRECCIA_FAILURE: no memory */
+int platen_loosen(const Constraint *constraint, Error *error);
+/** Returns the displacement, or the rate of displacement, of the centre along the direction, by the leader that leads
+ * once the centre is free.
+ *  @param[in] u, v  [motions][places] */
+double platen_centre_displacement(const Constraint *constraint, double *const *u);
+double platen_centre_rate(const Constraint *constraint, double *const *v);
+/** Returns the resultant on the centre of forces on the particles.
+ *  @param[in] f  [motions][places] forces */
+double platen_centre_force(const Constraint *constraint, double *const *f);
+/** Adds a force on the centre, once it is free, as forces on the leaders that do the same work.
+ *  @param[in,out] f  [motions][places] forces */
+void platen_add_centre_force(const Constraint *constraint, double *const *f, double force);
 
 /** Returns the width along an axis of the patch on which a constraint acts, a spacing more than its particles stand
  * apart; 0 where they stand in one row or the axis is not across the direction. */

@@ -103,6 +103,13 @@ static int check_pairs(const Load *load, const Constraint *held, const uint8_t *
                         "let it be 'platen: fixed', or leave this particle out of the tie",
                         p->number[a], p->position[0][a], p->position[1][a], p->position[2][a],
                         held->load->spec->head.node->line);
+    if ((marked[a] || marked[b]) && held->one_sided)
+      return node_error(reader->document, load->node, reader->error,
+                        "tie: particle %d at [%g, %g, %g] is under a support that only presses, that of the load in "
+                        "line %d; leave 'only presses' out, or leave this particle out of the tie",
+                        p->number[marked[a] ? a : b], p->position[0][marked[a] ? a : b],
+                        p->position[1][marked[a] ? a : b], p->position[2][marked[a] ? a : b],
+                        held->load->spec->head.node->line);
     if (marked[a] == marked[b]) continue;
     const int32_t bad = marked[a] ? a : b;
     return node_error(reader->document, load->node, reader->error,

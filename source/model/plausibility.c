@@ -641,7 +641,9 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
     describe_load(model, &model->loading.loads[k], &e, text);
     plausibility_describe_middle(model, &model->loading.loads[k], text);
     plausibility_describe_platen(model, &model->loading.loads[k], text);
+    plausibility_describe_pressing(model, &model->loading.loads[k], text);
   }
+  plausibility_describe_lift(model, text);
   describe_step(model, text);
   const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
   text_add(text, "  the run: ");

@@ -1,7 +1,8 @@
 /* What the files of plausibility share: words and units (plausibility_words.c); loads and ground
  * (plausibility_loads.c); blocks and contact (plausibility_contact.c); supports (plausibility_supports.c); patches that
- * can turn or not (plausibility_platens.c); strains (plausibility_strains.c); bars (plausibility_bars.c); points beside
- * bodies (plausibility_places.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
+ * can turn or not (plausibility_platens.c); supports that only press (plausibility_pressing.c); strains
+ * (plausibility_strains.c); bars (plausibility_bars.c); points beside bodies (plausibility_places.c); pictures
+ * (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -48,6 +49,11 @@ void plausibility_describe_middle(const breccia_model *model, const Load *load, 
 
 /** Adds a line on whether the patch that a load moves or holds in one direction can turn. */
 void plausibility_describe_platen(const breccia_model *model, const Load *load, Text *text);
+
+/** Adds a line on the side from which a load that only presses pushes. */
+void plausibility_describe_pressing(const breccia_model *model, const Load *load, Text *text);
+/** Adds a line if nothing but supports that only press holds the body in the stage under way. */
+void plausibility_describe_lift(const breccia_model *model, Text *text);
 
 /** Warns where ground begins under stresses that nothing balances, or that its law does not bear. */
 void plausibility_warn_of_ground(breccia_model *model);

@@ -114,6 +114,21 @@ static void run_loads_tell_force(const double force[3], double size, const char 
   text_add(t, "[%.4g, %.4g, %.4g]%s%s", v[0], v[1], v[2], *unit ? " " : "", unit);
 }
 
+/** Adds of how many particles a support that only presses has let go at the end. */
+static void run_loads_tell_open(const Loading *loading, const Load *load, Text *t)
+{
+  for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c) {
+    const OneSided *q = c->one_sided;
+    int64_t open = 0;
+    if (c->load != load || !q || !load_acts(loading, load)) continue;
+    for (int64_t n = 0; n < q->count; ++n) open += q->open[n];
+    if (c->platen)
+      text_add(t, ", only presses%s", open ? ": has let go" : "");
+    else
+      text_add(t, ", only presses: has let go of %lld of its %lld particles", (long long)open, (long long)q->count);
+  }
+}
+
 static void run_loads_tell_resultant(const breccia_model *model, const Load *load, const Resultant *r, Text *t)
 {
   char force[64], time[64];
@@ -127,6 +142,7 @@ static void run_loads_tell_resultant(const breccia_model *model, const Load *loa
   if (!isnan(r->time) && size > 0) text_add(t, " at time %.6g %s", r->time, time);
   text_add(t, ", ");
   run_loads_tell_force(r->now, size, force, t);
+  run_loads_tell_open(&model->loading, load, t);
   text_add(t, "\n");
 }
 

@@ -5,14 +5,15 @@
 #include "solver/matrix.h"
 
 #include "base/memory.h"
+#include "loading/one_sided.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct Direct {
   Matrix matrix;
-  /** Number of broken bonds, and pattern of additional forces, when the matrix was created. */
-  int64_t broken, pattern;
+  /** Number of broken bonds, pattern of additional forces and key of one-sided supports when the matrix was created. */
+  int64_t broken, pattern, open;
   Factors *factors;
   /** Residual, overwritten by its correction [matrix.size]. */
   double *correction;
@@ -65,12 +66,14 @@ static void hold_lone_unknowns(Matrix *m)
   }
 }
 
-/** Creates matrix and factors again if bonds have broken since, or if additional forces join other particles. */
+/** Creates matrix and factors again if bonds have broken since, if additional forces join other particles, or if
+ * one-sided supports have let go or closed. */
 static int direct_renew(LinearSolver *s, Error *error)
 {
   Direct *d = s->own;
   const int64_t pattern = forces_pattern(&s->domain->forces);
-  if (d->broken == s->domain->broken_count && d->pattern == pattern) return BRECCIA_OK;
+  const int64_t open = one_sided_key(s->loading);
+  if (d->broken == s->domain->broken_count && d->pattern == pattern && d->open == open) return BRECCIA_OK;
   d->broken = -1;
   factors_destroy(&d->factors);
   matrix_destroy(&d->matrix);
@@ -82,6 +85,7 @@ static int direct_renew(LinearSolver *s, Error *error)
   if (!d->correction || !d->factors) return BRECCIA_FAILURE;
   d->broken = s->domain->broken_count;
   d->pattern = pattern;
+  d->open = open;
   return BRECCIA_OK;
 }
 

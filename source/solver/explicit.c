@@ -400,7 +400,11 @@ static void apply_loads(Explicit *s, double end)
   if (s->viscous.time > 0) stiffness_damping_take_off(&s->viscous, d);
   loading_apply(s->loading, d->particles, end);
   if (s->viscous.time > 0) stiffness_damping_put_back(&s->viscous, d);
-  TEAM_SINGLE loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
+  TEAM_SINGLE
+  {
+    loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
+    explicit_note_open_platens(s);
+  }
 }
 
 /** Bonds that break, forces, velocities at the end of the step. */

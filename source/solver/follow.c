@@ -192,9 +192,9 @@ static void follow_row(const Constraint *c, int64_t n, void *context)
   Follow *own = &of->follow[of->motions * (int64_t)c->load->selection.places[n] + c->row];
   add_along(of, own, own, c->direction, -1);
   if (c->images) add_along(of, own, &of->follow[of->motions * (int64_t)c->images[n] + c->row], c->direction, c->share);
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m)
+  for (int m = 0; m < constraint_leaders(c); ++m)
     add_along(of, own, &of->follow[of->motions * (int64_t)constraint_leader(c, m)], c->direction,
-              c->platen->share[m][n]);
+              constraint_share(c, m, n));
   for (int k = 0; c->platen && k < 3; ++k)
     if (c->direction[k] != 0) own[k].own = own[k].count;
 }

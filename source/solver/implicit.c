@@ -143,6 +143,7 @@ static void destroy(Solver *run)
   Implicit *s = run->own;
   newton_destroy(&s->newton);
   increment_destroy(&s->increment);
+  pressing_destroy(&s->pressing);
   vectors_free(s->acceleration);
   vectors_free(s->drag);
   vectors_free(s->velocity);
@@ -172,6 +173,7 @@ static int create(Solver *run, Error *error)
                     vectors_make(s->drag, p, "damping", error) && vectors_make(s->velocity, p, "velocities", error) &&
                     vectors_make(s->drag_then, p, "damping", error) && vectors_make(s->result, p, "steps", error);
   if (!made || increment_create(&s->increment, run->domain, run->loading, error)) return BRECCIA_FAILURE;
+  if (pressing_create(&s->pressing, run->loading, error)) return BRECCIA_FAILURE;
   return newton_create(&s->newton, error);
 }
 

@@ -5,6 +5,7 @@
 #include "solver/damping.h"
 #include "solver/increment.h"
 #include "solver/newton.h"
+#include "solver/pressing.h"
 
 typedef struct ImplicitSpec {
   SectionHead head;
@@ -24,11 +25,13 @@ typedef struct Implicit {
   Newton newton;
   NewtonForces beside;
   Increment increment;
+  Pressing pressing;
   double *acceleration[MOTIONS];
   double *drag[MOTIONS]; /* forces of damping, against velocities */
   /* At the end of the step under way, as far as it has been iterated; `result` is whatever is worked out. */
   double *velocity[MOTIONS], *drag_then[MOTIONS], *result[MOTIONS];
   double length; /* of the step under way */
+  double struck; /* energy that impacts on one-sided supports dissipate in the step */
   double then;   /* time of the run at its end */
   double next;   /* of the step to be tried next */
   double shift;  /* size of the largest displacements so far, by which errors are measured */

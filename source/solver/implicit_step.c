@@ -9,6 +9,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/one_sided.h"
 #include "loading/platen.h"
 #include "solver/vectors.h"
 #include <math.h>
@@ -37,6 +38,20 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
   constraint_add(c, r->velocity, i, wanted);
 }
 
+/** Adds to the motions of the leaders of platens that close in the step under way what takes the motion of the centre
+ * by the scheme to the prescribed one.
+ *  @param[in,out] v  [motions][places] velocities, or else accelerations */
+static void implicit_still_leaders(const Implicit *s, double time, bool velocities, double *const v[MOTIONS])
+{
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *c = &s->loading->constraints[n];
+    if (!c->platen || !c->platen->closes || !load_acts(s->loading, c->load)) continue;
+    const double change = velocities ? constraint_velocity(c, time, s->length) - c->platen->velocity
+                                     : constraint_acceleration(c, time, s->length) - c->platen->acceleration;
+    for (int m = 0; m < constraint_leaders(c); ++m) constraint_add(c, v, constraint_leader(c, m), change);
+  }
+}
+
 /** Velocities at the end of the step: those of prescribed motions as prescribed, because the scheme makes them ring. */
 static void find_velocities(Implicit *s, double *const moved[MOTIONS], double time)
 {
@@ -47,6 +62,7 @@ static void find_velocities(Implicit *s, double *const moved[MOTIONS], double ti
     for (int64_t i = 0; i < p->places; ++i)
       s->velocity[k][i] = gamma / (beta * dt) * moved[k][i] + (1 - gamma / beta) * p->velocity[k][i] +
                           dt * (1 - gamma / (2 * beta)) * s->acceleration[k][i];
+  implicit_still_leaders(s, time, true, s->velocity);
   unknowns_each_row(&s->newton.linear.unknowns, prescribe_rate, &r);
   s->ledger->given = fmax(s->ledger->given, r.most);
 }
@@ -129,9 +145,10 @@ static void accelerate_with_platen(const Constraint *c, int64_t n, void *context
   Implicit *s = context;
   const int32_t i = c->load->selection.places[n];
   if (!c->platen) return;
+  const double given = c->platen->closes ? c->platen->acceleration : constraint_acceleration(c, s->then, s->length);
   constraint_add(c, s->result, i,
-                 constraint_part(c, n) * constraint_acceleration(c, s->then, s->length) +
-                     constraint_followed(c, s->result, n) - constraint_along(c, s->result, i));
+                 constraint_part(c, n) * given + constraint_followed(c, s->result, n) -
+                     constraint_along(c, s->result, i));
 }
 
 /** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
@@ -150,6 +167,7 @@ static double add_forces(void *context, double *const moved[MOTIONS], double *co
       s->result[k][i] *= p->inertia[k][i] * p->volume[i];
       force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
     }
+  one_sided_add_pressed(s->loading, -weight * alpha, force);
   unknowns_gather(u, s->result);
   return unknowns_product_of_forces(u, s->result, s->result);
 }
@@ -194,7 +212,7 @@ static void each_leader(const Implicit *s, void (*one)(void *context, const Cons
 {
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *c = &s->loading->constraints[n];
-    for (int m = 0; c->platen && load_acts(s->loading, c->load) && m < c->platen->leaders; ++m)
+    for (int m = 0; load_acts(s->loading, c->load) && m < constraint_leaders(c); ++m)
       one(context, c, constraint_leader(c, m));
   }
 }
@@ -242,13 +260,15 @@ static void book(Implicit *s)
       s->result[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i] + p->internal[k][i] +
                                         p->external[k][i]) -
                         s->drag[k][i] - s->drag_then[k][i];
+  one_sided_add_pressed(s->loading, 1, s->result);
   gather_free(s, s->result);
   const double freely = 0.5 * unknowns_work(u, s->result, moved);
   const double kinetic = kinetic_energy(s->domain, s->velocity), held = held_energy(s, s->velocity);
   const double kinetic_before = kinetic_energy(s->domain, p->velocity), held_before = held_energy(s, p->velocity);
   s->ledger->bond_work += bonds;
-  s->ledger->damping_work += damping;
-  s->ledger->external_work += bonds + damping + freely + held - held_before;
+  s->ledger->damping_work += damping + s->struck;
+  s->ledger->damped |= s->struck > 0;
+  s->ledger->external_work += bonds + damping + freely + held - held_before + s->struck;
   s->ledger->numerical += freely + held - held_before - (kinetic - kinetic_before);
   s->ledger->kinetic = kinetic;
 }
@@ -266,6 +286,7 @@ int implicit_begin(Solver *run, Error *error)
   loading_move(s->loading, &(LoadMotion){.velocity = p->velocity});
   newton_apply_loads(&s->newton, run->clock.time);
   loading_settle(s->loading, p, p->velocity, 0);
+  pressing_take_up(&s->newton, s->drag);
   find_accelerations(s);
   s->ledger->kinetic = kinetic_energy(s->domain, p->velocity);
   for (int k = 0; k < 3; ++k)
@@ -282,6 +303,7 @@ static double find_error(Implicit *s)
   double change = 0;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, s->newton.moved, k, i);
+  implicit_still_leaders(s, s->then, false, s->result);
   unknowns_clear_rest(u, s->result);
   unknowns_spread(u, NAN, s->result);
   for (int k = 0; k < p->motions; ++k)
@@ -309,6 +331,7 @@ static void finish_step(Implicit *s)
   loading_settle(s->loading, p, s->newton.moved, 1);
   find_error(s);
   increment_accept(&s->increment, s->newton.moved);
+  one_sided_accept(s->loading);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       if (k < ROTATION) fastest = fmax(fastest, fabs(s->newton.moved[k][i]) / s->length);
@@ -318,6 +341,52 @@ static void finish_step(Implicit *s)
     }
   s->ledger->fastest = fastest;
   s->shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
+}
+
+/** Notes what a particle loses, or a platen at its centre, that comes back to a one-sided support in the step: a
+ * plastic impact. The centre of a platen comes to where it is prescribed to be by the accelerations of the scheme. */
+static void implicit_strike_one(void *context, const Constraint *c, int64_t entry)
+{
+  Implicit *s = context;
+  const Particles *p = s->domain->particles;
+  const Selection *on = &c->load->selection;
+  const double dt = s->length, beta = s->spec->beta, gamma = s->spec->gamma,
+               rate = constraint_velocity(c, s->clock->time, dt);
+  if (!c->platen) {
+    const int32_t i = on->places[entry];
+    const double change = rate * constraint_part(c, entry) - constraint_along(c, p->velocity, i);
+    s->struck += 0.5 * p->inertia[c->row][i] * s->domain->counted[i] * change * change;
+    return;
+  }
+  const double moved = constraint_displacement(c, s->clock->time + dt) - platen_centre_displacement(c, p->displacement),
+               v = platen_centre_rate(c, p->velocity), a = platen_centre_rate(c, s->acceleration);
+  c->platen->closes = true;
+  c->platen->acceleration = (moved / dt - v) / (beta * dt) - (1 / (2 * beta) - 1) * a;
+  c->platen->velocity = gamma / (beta * dt) * moved + (1 - gamma / beta) * v + dt * (1 - gamma / (2 * beta)) * a;
+  for (int64_t n = 0; n < on->count; ++n)
+    s->struck += 0.5 * p->density[on->places[n]] * s->domain->counted[on->places[n]] * (rate - v) * (rate - v);
+}
+
+static void implicit_strike(Implicit *s)
+{
+  s->struck = 0;
+  for (int c = 0; c < s->loading->constraint_count; ++c)
+    if (s->loading->constraints[c].platen) s->loading->constraints[c].platen->closes = false;
+  pressing_each_closing(&s->pressing, s->loading, implicit_strike_one, s);
+}
+
+/** Solves the step under way until no one-sided support pulls or is passed. */
+static NewtonOutcome implicit_press(Implicit *s, double end, Error *error)
+{
+  pressing_begin(&s->pressing, &s->newton);
+  for (;;) {
+    domain_tell_time(s->domain, end, s->length);
+    implicit_strike(s);
+    NewtonOutcome outcome = newton_solve(&s->newton, end, error);
+    if (!pressing_is_wrong(&s->pressing, &s->newton, end, &outcome)) return outcome;
+    increment_retreat(&s->increment);
+    pressing_choose(&s->pressing, &s->newton);
+  }
 }
 
 /** One try to come to a time of the run; the state is that of before if it fails.
@@ -331,9 +400,8 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
   increment_begin(&s->increment);
   loading_move(s->loading, &(LoadMotion){.velocity = s->velocity, .rate = rate});
-  domain_tell_time(s->domain, end, dt);
   domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));
-  const NewtonOutcome outcome = newton_solve(&s->newton, end, error);
+  const NewtonOutcome outcome = implicit_press(s, end, error);
   domain_mix_tangents(s->domain, 0);
   *found = outcome == NEWTON_CONVERGED ? find_error(s) : 0;
   if (outcome != NEWTON_CONVERGED) increment_retreat(&s->increment);

@@ -4,6 +4,7 @@
 #include "solver/vectors.h"
 
 #include "base/team.h"
+#include "loading/one_sided.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -131,6 +132,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
       exerted += external * external;
     }
   if (n->beside) exerted = fmax(exerted, n->beside->add(n->beside->context, n->moved, n->force));
+  one_sided_find(n->loading, n->force);
   const double all = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
   unknowns_gather(&n->linear.unknowns, n->force);
   const double free = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
@@ -168,6 +170,7 @@ void newton_state(Newton *n, StateList *list)
   state_add_number(list, "mass factored", "1", STATE_LEARNED, &n->factored_mass);
   state_add_count(list, "broken bonds when factored", STATE_LEARNED, &n->factored_broken);
   state_add_count(list, "stiffness follows", STATE_LEARNED, &n->follows);
+  if (one_sided_count(n->loading)) state_add_count(list, "open when factored", STATE_LEARNED, &n->factored_open);
 }
 
 static bool keeps_factors(const Newton *n)
@@ -200,13 +203,16 @@ int newton_prepare(Newton *n, Error *error)
     return linear_solver_prepare(l, error);
   }
   const double share = l->stiffness_share, mass = l->mass_factor;
+  const int64_t open = one_sided_key(n->loading);
   const bool same = fabs(mass - n->factored_mass) <= 1e-9 * mass &&
-                    fabs(share - n->factored_share) <= 1e-9 * (1 + share) && n->factored_broken == d->broken_count;
-  if (same && n->factored) return BRECCIA_OK;
+                    fabs(share - n->factored_share) <= 1e-9 * (1 + share) && n->factored_broken == d->broken_count &&
+                    n->factored_open == open;
+  if (same && n->factored && n->open_in_factors == open) return BRECCIA_OK;
   if (!same) {
     n->factored_share = share;
     n->factored_mass = mass;
     n->factored_broken = d->broken_count;
+    n->factored_open = open;
   }
   l->stiffness_share = n->factored_share;
   l->mass_factor = n->factored_mass;
@@ -217,6 +223,7 @@ int newton_prepare(Newton *n, Error *error)
   l->stiffness_share = share;
   l->mass_factor = mass;
   n->factored = !status;
+  n->open_in_factors = open;
   return status ? status : domain_linearise(n->domain, error);
 }
 

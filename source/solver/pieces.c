@@ -66,8 +66,7 @@ static void join_bonds(Pieces *q)
 static void join_images(const Constraint *c, int64_t n, void *context)
 {
   if (c->images) join(context, c->load->selection.places[n], c->images[n]);
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m)
-    join(context, c->load->selection.places[n], constraint_leader(c, m));
+  for (int m = 0; m < constraint_leaders(c); ++m) join(context, c->load->selection.places[n], constraint_leader(c, m));
 }
 
 static void join_selection(Pieces *q, int32_t first, const Selection *selection)
@@ -180,8 +179,8 @@ static void hold_row(const Constraint *c, int64_t n, void *context)
   }
   rigid(q, h, c->direction, i, 1, moved);
   if (c->images) rigid(q, h, c->direction, c->images[n], -c->share, moved);
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m)
-    rigid(q, h, c->direction, constraint_leader(c, m), -c->platen->share[m][n], moved);
+  for (int m = 0; m < constraint_leaders(c); ++m)
+    rigid(q, h, c->direction, constraint_leader(c, m), -constraint_share(c, m, n), moved);
   add_row(h, moved);
 }
 

@@ -4,6 +4,7 @@
  * alone to hold up all others. */
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/platen.h"
 #include "solver/explicit.h"
 
 #include <math.h>
@@ -92,6 +93,7 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
   const double *counted = s->domain->counted;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
+  const OneSided *lets_go = constraint->one_sided;
   double dt = s->clock->time_step, c = explicit_mass_damping(s), bond = 0, external = 0, damping = 0, between = 0,
          largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
@@ -99,13 +101,23 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
     int32_t i = constraint->load->selection.places[k];
     double half = along(rows.velocity, d, i), a = along(rows.acceleration, d, i), drifted = dt * half;
     double fi = along(rows.internal, d, i), fe = along(rows.external, d, i);
-    const double part_of = constraint_part(constraint, k), from = constraint->from ? constraint->from[k] : 0;
+    const double part_of = constraint_part(constraint, k), from = constraint_from(constraint, k);
     double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
            off = (rows.from_step ? motion->moved * part_of : from + motion->target * part_of) -
                  along(rows.displacement, d, i);
     if (constraint_follows(constraint)) {
       off += constraint_followed(constraint, s->domain->particles->displacement, k);
       constraint->moved[k] = drifted + off;
+    }
+    if (lets_go && !constraint->platen) {
+      const bool strikes = lets_go->open[k] || s->clock->time <= constraint->load->begin;
+      lets_go->open[k] = !(lets_go->pushes * off > 0);
+      if (lets_go->open[k]) continue;
+      if (strikes) { /* a plastic impact */
+        const double fast = v - motion->moved * part_of / dt, lost = 0.5 * rows.inertia[i] * counted[i] * fast * fast;
+        damping += lost;
+        external += lost;
+      }
     }
     if (!constraint->row) largest = fmax(largest, fabs(drifted + off));
     double moved = drifted + off, free_work = 0.5 * drifted * counted[i], work = 0.5 * moved * counted[i];
@@ -148,6 +160,64 @@ static bool is_turn(const Explicit *s, const Constraint *constraint, bool second
   return load_acts(s->loading, constraint->load) && (constraint->images != NULL) == second;
 }
 
+/** Lets the centre of a platen that has come back to its support be where that is at the end of the step, once its
+ * leaders have drifted. The shift is an impulse in the middle of the step. */
+static void explicit_strike_platen(Explicit *s, const Constraint *c, const struct Motion *motion)
+{
+  const Particles *p = s->domain->particles;
+  const double passed = motion->target - platen_centre_displacement(c, p->displacement),
+               fast = platen_centre_rate(c, p->velocity), sudden = passed / s->clock->time_step;
+  c->platen->strikes = 0;
+  if (!constraint_is_loose(c) || !(c->one_sided->pushes * passed > 0)) return;
+  c->one_sided->open[0] = 0;
+  c->platen->strikes = motion->rate - fast;
+  c->platen->still = motion->rate - fast - sudden;
+  for (int m = 0; m < constraint_leaders(c); ++m) {
+    const int32_t i = constraint_leader(c, m);
+    const double half = constraint_along(c, p->velocity, i), volume = s->domain->counted[i],
+                 bond = -0.5 * constraint_along(c, p->internal, i) * passed * volume;
+    s->ledger->bond_work += bond;
+    s->ledger->external_work += bond + 0.5 * p->density[i] * volume * sudden * (2 * half + sudden);
+    constraint_add(c, p->displacement, i, passed);
+    constraint_add(c, p->velocity, i, sudden);
+  }
+}
+
+/** Gives the leaders of a platen that has struck the velocity of the support besides that of the turn, at the end of
+ * the step: a plastic impact of all particles under it. */
+static void explicit_still_platen(Explicit *s, const Constraint *c)
+{
+  const Particles *p = s->domain->particles;
+  Platen *q = c->platen;
+  if (q->strikes == 0) return;
+  for (int64_t n = 0; n < c->load->selection.count; ++n) {
+    const int32_t i = c->load->selection.places[n];
+    const double mass = p->density[i] * s->domain->counted[i], lost = 0.5 * mass * q->strikes * q->strikes;
+    s->ledger->damping_work += lost;
+    s->ledger->external_work += lost;
+    if (!constraint_leads(c, n)) continue;
+    const double gain = 0.5 * mass * q->still * (2 * constraint_along(c, p->velocity, i) + q->still);
+    s->ledger->external_work += gain;
+    s->ledger->kinetic += gain;
+    constraint_add(c, p->velocity, i, q->still);
+  }
+  q->strikes = q->still = 0;
+  s->ledger->damped = 1;
+}
+
+void explicit_note_open_platens(Explicit *s)
+{
+  const Particles *p = s->domain->particles;
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *c = &s->loading->constraints[n];
+    if (!c->platen || !c->platen->opens) continue;
+    const int32_t i = constraint_leader(c, c->platen->leaders);
+    const double half = constraint_along(c, p->velocity, i);
+    s->ledger->external_work += 0.5 * p->density[i] * s->domain->counted[i] * half * half;
+    c->platen->opens = false;
+  }
+}
+
 void explicit_prescribe_displacements(Explicit *s)
 {
   TEAM_SINGLE
@@ -159,6 +229,8 @@ void explicit_prescribe_displacements(Explicit *s)
   for (int n = 0; n < 2 * count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n % count];
     if (!is_turn(s, constraint, n >= count)) continue;
+    if (constraint->platen && constraint->one_sided)
+      TEAM_SINGLE explicit_strike_platen(s, constraint, &s->motions[n % count]);
     TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, &s->motions[n % count], part);
     TEAM_SINGLE add_parts(s, constraint);
   }
@@ -170,8 +242,9 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = explicit_mass_damping(s), external = 0, damping = 0, kinetic = 0, between = 0;
+  const bool keeps = constraint->one_sided && !constraint->platen; /* the next step decides by the acceleration */
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
-    if (constraint_leads(constraint, k)) continue;
+    if (constraint_leads(constraint, k) || constraint_is_open(constraint, k)) continue;
     int32_t i = constraint->load->selection.places[k];
     double mass = rows.inertia[i] * counted[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
     const double part_of = constraint_part(constraint, k);
@@ -183,7 +256,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
     external += 0.5 * mass * rate * rate - fe * work - fi * work;
     between -= dt * dt / 8 * mass * (a - c * v) * (a - c * v);
     add_along(rows.velocity, d, i, rate - v);
-    add_along(rows.acceleration, d, i, -a);
+    if (!keeps) add_along(rows.acceleration, d, i, -a);
   }
   double *sums = s->parts[part];
   sums[BOND_WORK] = sums[MOTION] = 0;
@@ -200,6 +273,7 @@ void explicit_prescribe_velocities(Explicit *s)
     const Constraint *constraint = &s->loading->constraints[n % count];
     if (!is_turn(s, constraint, n >= count)) continue;
     const struct Motion *motion = &s->motions[n % count];
+    if (constraint->platen && constraint->one_sided) TEAM_SINGLE explicit_still_platen(s, constraint);
     TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, motion, part);
     TEAM_SINGLE add_parts(s, constraint);
   }

@@ -165,7 +165,7 @@ static void note_leaders(Summing *s)
 {
   const Loading *loading = s->solver->loading;
   for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c)
-    for (int m = 0; c->platen && load_acts(loading, c->load) && m < c->platen->leaders; ++m) {
+    for (int m = 0; load_acts(loading, c->load) && m < constraint_leaders(c); ++m) {
       const int32_t leader = constraint_leader(c, m);
       if (counts(s, c, leader)) note_middle(s, leader, leader);
     }
@@ -204,6 +204,13 @@ static double take_row(const Summing *s, const Constraint *c, int32_t i)
   return along;
 }
 
+/** Returns the force along the direction without what a one-sided support on its particle would pull. */
+static double reactions_pressing(const Constraint *c, double along)
+{
+  const OneSided *q = c->one_sided;
+  return q && !c->platen ? q->pushes * fmax(0, q->pushes * along) : along;
+}
+
 static void add_row(const Constraint *c, int64_t n, void *context)
 {
   Summing *s = context;
@@ -215,9 +222,10 @@ static void add_row(const Constraint *c, int64_t n, void *context)
   double along = take_row(s, c, i);
   if (!c->platen && !counts(s, c, i)) return;
   if (s->solver->type->inertia && !c->images) along += s->solver->type->inertia(s->solver, c, n);
+  along = reactions_pressing(c, along);
   add_along(s, c, i, along);
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m) /* a platen takes no moment about its centre */
-    add_along(s, c, constraint_leader(c, m), -c->platen->share[m][n] * along);
+  for (int m = 0; m < constraint_leaders(c); ++m) /* a platen takes no moment about its centre */
+    add_along(s, c, constraint_leader(c, m), -constraint_share(c, m, n) * along);
 }
 
 Wrench reactions_sum(const Reactions *r, const Solver *solver, const uint8_t *on, const char *load, const double *about)
@@ -248,8 +256,9 @@ static void add_row_of_each(const Constraint *c, int64_t n, void *context)
   double along = take_row(&each->summing, c, c->load->selection.places[n]);
   if (each->several && c->images) return;
   if (s->type->inertia && !c->images) along += s->type->inertia(s, c, n);
+  along = reactions_pressing(c, along);
   double share = 1;
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m) share -= c->platen->share[m][n];
+  for (int m = 0; m < constraint_leaders(c); ++m) share -= constraint_share(c, m, n);
   along *= share; /* the centre of a platen takes what its leaders leave */
   for (int k = 0; k < 3; ++k) each->force[c->load - s->loading->loads][k] += along * c->direction[k];
 }

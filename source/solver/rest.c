@@ -69,11 +69,11 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
     const Constraint *c = &s->loading->constraints[n];
     for (int64_t at = 0; load_acts(s->loading, c->load) && at < c->load->selection.count; ++at) {
       const int32_t i = c->load->selection.places[at];
-      if (constraint_leads(c, at)) continue;
+      if (constraint_leads(c, at) || constraint_is_open(c, at)) continue;
       const double along = constraint_along(c, free_force, i);
       constraint_add(c, free_force, i, -along);
-      for (int m = 0; s->type->rests && c->platen && m < c->platen->leaders; ++m)
-        constraint_add(c, free_force, constraint_leader(c, m), c->platen->share[m][at] * along);
+      for (int m = 0; s->type->rests && m < constraint_leaders(c); ++m)
+        constraint_add(c, free_force, constraint_leader(c, m), constraint_share(c, m, at) * along);
       acting += fabs(along) / unknowns_length(&unknowns, c->row);
       held_squares += pow(along / unknowns_length(&unknowns, c->row), 2);
     }

@@ -97,6 +97,7 @@ static void destroy(Solver *run)
   vectors_free(s->way.moved);
   control_destroy(&s->control);
   increment_destroy(&s->increment);
+  pressing_destroy(&s->pressing);
   free(s);
   run->own = NULL;
 }
@@ -116,7 +117,8 @@ static int create(Solver *run, Error *error)
   if (status) return status;
   if (s->spec->control) s->newton.control = &s->control;
   s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
-  if (increment_create(&s->increment, run->domain, run->loading, error) || newton_create(&s->newton, error))
+  if (increment_create(&s->increment, run->domain, run->loading, error) || newton_create(&s->newton, error) ||
+      pressing_create(&s->pressing, run->loading, error))
     return BRECCIA_FAILURE;
   if (domain_may_soften(run->domain) && !run->domain->forces.count && !s->newton.relaxes && !s->spec->control &&
       !vectors_make(s->newton.change_forces, run->domain->particles, "works", error))
@@ -275,6 +277,7 @@ static int begin(Solver *run, Error *error)
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
   newton_note_forces_held(&s->newton);
+  pressing_take_up(&s->newton, NULL);
   increment_start(&s->increment);
   return BRECCIA_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "solver/increment.h"
 #include "solver/newton_descent.h"
+#include "solver/pressing.h"
 #include "solver/relaxation.h"
 
 #include <stdbool.h>
@@ -43,6 +44,7 @@ typedef struct Static {
   Relaxation relaxation;
   Control control;
   Increment increment;
+  Pressing pressing;
   StateCopy
       whole; /* the state at the begin of the increment, where what follows from it may leave no equilibrium near; else empty */
   Way way;

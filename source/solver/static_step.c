@@ -2,6 +2,7 @@
 #include "solver/pieces.h"
 #include "solver/static.h"
 
+#include "loading/one_sided.h"
 #include "loading/support.h"
 #include "solver/vectors.h"
 
@@ -21,6 +22,7 @@ static void book(Static *s, double *const moved[MOTIONS])
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
+  one_sided_add_pressed(s->loading, 1, before);
   unknowns_gather(&s->newton.linear.unknowns, before);
   const double given_off = 0.5 * (unknowns_work(&s->newton.linear.unknowns, before, moved) +
                                   unknowns_work(&s->newton.linear.unknowns, s->newton.force, moved));
@@ -85,6 +87,31 @@ static NewtonOutcome descend(Static *s, double end, Error *error)
   return descent_solve(&s->descent, n, end, LONGER * s->spec->newton.iterations, error);
 }
 
+/** Solves the increment under way with the set of one-sided supports as it is. */
+static NewtonOutcome static_solve(Static *s, double end, Try how, Error *error)
+{
+  domain_tell_time(s->domain, end, end - s->clock->time);
+  if (s->spec->control) {
+    const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
+    s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
+  }
+  if (how.by == BY_RELAXATION || s->newton.relaxes) return relax(s, end, error);
+  return how.by == BY_SECANTS ? descend(s, end, error) : newton_solve(&s->newton, end, error);
+}
+
+/** Solves the increment under way until no one-sided support pulls or is passed. */
+static NewtonOutcome static_press(Static *s, double end, Try how, Error *error)
+{
+  pressing_begin(&s->pressing, &s->newton);
+  for (;;) {
+    NewtonOutcome outcome = static_solve(s, end, how, error);
+    if (!pressing_is_wrong(&s->pressing, &s->newton, end, &outcome)) return outcome;
+    increment_retreat(&s->increment);
+    s->relaxation.prepared = NAN;
+    if (!pressing_choose(&s->pressing, &s->newton)) return NEWTON_SINGULAR;
+  }
+}
+
 NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
 {
   if (how.again) {
@@ -93,15 +120,7 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     increment_begin(&s->increment);
     s->way.bonds = s->way.given_off = s->way.sudden = 0;
   }
-  domain_tell_time(s->domain, end, end - s->clock->time);
-  if (s->spec->control) {
-    const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
-    s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
-  }
-  const bool relaxes = how.by == BY_RELAXATION || s->newton.relaxes;
-  NewtonOutcome outcome = relaxes                ? relax(s, end, error)
-                          : how.by == BY_SECANTS ? descend(s, end, error)
-                                                 : newton_solve(&s->newton, end, error);
+  NewtonOutcome outcome = static_press(s, end, how, error);
   if (outcome == NEWTON_CONVERGED && !s->newton.relaxes && !how.again && is_coarse(s, end - s->clock->time))
     outcome = NEWTON_COARSE;
   if (outcome != NEWTON_CONVERGED) {
@@ -111,6 +130,7 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
   }
   if (how.again) vectors_combine(s->domain, 1, s->way.moved, 1, s->newton.moved);
   book(s, how.again ? s->way.moved : s->newton.moved);
+  one_sided_accept(s->loading);
   if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
   increment_accept(&s->increment, s->newton.moved);
   book_sudden(s, how.again ? s->way.moved : s->newton.moved);
@@ -147,6 +167,11 @@ static const char *describe_failure(const Static *s, NewtonOutcome outcome, char
 {
   LoosePiece loose = {0};
   char piece[256];
+  if (outcome == NEWTON_SINGULAR && s->pressing.loose.pieces) {
+    snprintf(words, size, "supports that only press would have to pull: once they let go, %s",
+             pieces_describe(&s->pressing.loose, s->domain->particles, piece, sizeof piece));
+    return words;
+  }
   const bool known = outcome == NEWTON_LAW || outcome == NEWTON_FAR || !s->domain->broken_count;
   if (known || pieces_find_loose(&s->newton.linear.unknowns, PIECES_WORKED, &loose, NULL) || !loose.pieces)
     return newton_describe(&s->newton, outcome, words, size);
@@ -183,7 +208,10 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
                    "iterations', or go on with a stage of 'explicit'";
   } else {
     describe_failure(s, outcome, words, sizeof words);
-    if (outcome == NEWTON_SLOW && s->newton.unbalanced <= s->spec->newton.residual)
+    if (outcome == NEWTON_SINGULAR && s->pressing.loose.pieces)
+      advice = "look at the direction of the loads, hold the body there by another support or a soft spring, or go on "
+               "with a stage of 'explicit'";
+    else if (outcome == NEWTON_SLOW && s->newton.unbalanced <= s->spec->newton.residual)
       advice = "take a larger 'displacement tolerance' or 'energy tolerance'";
     else if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
       advice = s->newton.relaxes ? "allow more 'relaxation iterations', or take a larger 'residual'"

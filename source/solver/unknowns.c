@@ -35,7 +35,7 @@ void unknowns_each_row(const Unknowns *u, void (*one)(const Constraint *constrai
     const Constraint *constraint = &u->loading->constraints[turn % count];
     if (!load_acts(u->loading, constraint->load) || (constraint->images != NULL) != (turn >= count)) continue;
     for (int64_t n = 0; n < constraint->load->selection.count; ++n)
-      if (!constraint_leads(constraint, n)) one(constraint, n, context);
+      if (!constraint_leads(constraint, n) && !constraint_is_open(constraint, n)) one(constraint, n, context);
   }
 }
 
@@ -60,7 +60,7 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   if (!isnan(s->time) && from_step)
     wanted += constraint_change(c, domain_step_begin(s->unknowns->domain), s->time) * constraint_part(c, n);
   else if (!isnan(s->time))
-    wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + (c->from ? c->from[n] : 0);
+    wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + constraint_from(c, n);
   if (!isnan(s->time)) wanted += constraint_followed(c, u, n) - constraint_along(c, u, i);
   constraint_add(c, s->v, i, wanted - constraint_along(c, s->v, i));
 }
@@ -102,8 +102,8 @@ static void hand_on_row(const Constraint *c, int64_t n, void *context)
 {
   double *const *f = context;
   const double along = constraint_along(c, f, c->load->selection.places[n]);
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m)
-    constraint_add(c, f, constraint_leader(c, m), c->platen->share[m][n] * along);
+  for (int m = 0; m < constraint_leaders(c); ++m)
+    constraint_add(c, f, constraint_leader(c, m), constraint_share(c, m, n) * along);
   clear_row(c, n, context);
 }
 

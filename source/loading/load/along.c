@@ -90,4 +90,5 @@ static const char *kind(const LoadValue *value, const char **dimension)
   return kinds[order];
 }
 
-const LoadType along_load = {.platen = true, .create = create, .vector = vector, .magnitude = magnitude, .kind = kind};
+const LoadType along_load = {
+    .platen = true, .may_press = true, .create = create, .vector = vector, .magnitude = magnitude, .kind = kind};

@@ -6,4 +6,5 @@ static int create(Load *load, const LoadMaking *making)
   return BRECCIA_OK;
 }
 
-const LoadType displacement_load = {.platen = true, .create = create, .vector = load_point, .magnitude = load_length};
+const LoadType displacement_load = {
+    .platen = true, .may_press = true, .create = create, .vector = load_point, .magnitude = load_length};

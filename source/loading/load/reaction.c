@@ -102,11 +102,11 @@ static void add_to_leaders(Reaction *own, const Particles *p, const Constraint *
                            double along)
 {
   const double volume = p->volume[c->load->selection.places[n]];
-  for (int m = 0; c->platen && m < c->platen->leaders; ++m) {
+  for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t leader = constraint_leader(c, m);
     int64_t at = 0;
     while (all->places[at] != leader) ++at;
-    add_along(own, p, c, at, -c->platen->share[m][n] * along * volume / p->volume[leader]);
+    add_along(own, p, c, at, -constraint_share(c, m, n) * along * volume / p->volume[leader]);
   }
 }
 
@@ -121,7 +121,7 @@ static bool begin(Load *load, Particles *p)
     const Selection *some = &c->load->selection;
     for (int64_t n = 0, m = 0; m < some->count; ++m) {
       const int32_t i = some->places[m];
-      if (constraint_leads(c, m)) continue;
+      if (constraint_leads(c, m) || constraint_is_open(c, m)) continue;
       while (all->places[n] != i) ++n; /* numbers ascend in both */
       double along = 0;
       for (int k = 0; k < 3 && c->row + k < p->motions; ++k)

@@ -14,4 +14,5 @@ static double magnitude(const LoadValue *value)
   return 0;
 }
 
-const LoadType roller_load = {.timeless = true, .create = create, .vector = load_point, .magnitude = magnitude};
+const LoadType roller_load = {
+    .timeless = true, .may_press = true, .create = create, .vector = load_point, .magnitude = magnitude};

@@ -1,6 +1,8 @@
 /* Elastic springs: from each particle to the ground, the stiffness shared by volume; or one between the mean displacements of two sets of
- * particles, on which it pulls like a force that is shared by volume. */
+ * particles, on which it pulls like a force that is shared by volume. One that only presses has no force and no
+ * stiffness where it would pull. */
 #include "loading/load/load_parts.h"
+#include "loading/one_sided.h"
 
 #include "base/team.h"
 #include <math.h>
@@ -51,6 +53,7 @@ const Section spring_load_section = {
 typedef struct Spring {
   double stiffness, direction[3];
   bool directed;
+  double presses;      /* 1 or -1: it only presses, along its direction or against it; 0: it also pulls */
   double other_volume; /* of the other end */
   double *from[3]; /* to the ground: [particles] displacements when it began; between two ends: [1] their difference */
   double pull[3];  /* between two ends: the force on the first, as of the last step */
@@ -87,6 +90,31 @@ static int aim(Spring *spring, const Load *load, const LoadMaking *making)
   return BRECCIA_OK;
 }
 
+/** Finds the side from which a spring that only presses pushes; one between two ends pushes these apart. */
+static int spring_find_side(Spring *spring, const Load *load, const LoadMaking *making)
+{
+  const Particles *p = &making->body->particles;
+  const Node *node = section_node(load->spec, "only presses");
+  double apart = 0;
+  if (!load->spec->only_presses) return BRECCIA_OK;
+  if (!spring->directed)
+    return node_error(making->reader->document, node, making->reader->error,
+                      "only presses: a spring that acts in all directions alike has no side from which it pushes; give "
+                      "its 'direction'");
+  for (int k = 0; k < 3 && joins(load); ++k)
+    apart += spring->direction[k] * (mean(p, &load->other, spring->other_volume, p->position[k]) -
+                                     mean(p, &load->selection, load->volume, p->position[k]));
+  if (joins(load))
+    spring->presses = apart > 0 ? -1 : apart < 0 ? 1 : 0;
+  else
+    spring->presses = one_sided_find_side(load, making, spring->direction);
+  if (spring->presses != 0) return BRECCIA_OK;
+  return node_error(making->reader->document, node, making->reader->error,
+                    joins(load) ? "only presses: the ends of the spring do not stand apart along its direction"
+                                : "only presses: the body lies on both sides of these particles along the spring; "
+                                  "select only particles at the face that it touches");
+}
+
 static int create(Load *load, const LoadMaking *making)
 {
   const SpringSpec *spec = load->value->section;
@@ -103,7 +131,8 @@ static int create(Load *load, const LoadMaking *making)
   const size_t count = joins(load) ? 1 : (size_t)load->selection.count;
   for (int k = 0; k < 3; ++k)
     if (!(spring->from[k] = memory_zeroed(count, sizeof(double), "spring", error))) return BRECCIA_FAILURE;
-  return aim(spring, load, making);
+  const int status = aim(spring, load, making);
+  return status ? status : spring_find_side(spring, load, making);
 }
 
 static void destroy(Load *load)
@@ -113,29 +142,41 @@ static void destroy(Load *load)
   free(spring);
 }
 
-/** What is left of a change of displacements in the spring's direction. */
-static void project(const Spring *spring, double change[3])
+/** What is left of a change of displacements in the spring's direction. @return its size along that, 0 without one */
+static double project(const Spring *spring, double change[3])
 {
-  if (!spring->directed) return;
+  if (!spring->directed) return 0;
   double along = 0;
   for (int k = 0; k < 3; ++k) along += change[k] * spring->direction[k];
   for (int k = 0; k < 3; ++k) change[k] = along * spring->direction[k];
+  return along;
 }
 
-static void change_between(const Load *load, const Particles *p, double change[3])
+/** Projects a change of displacements on the direction of the spring, and clears the change where the spring has let
+ * go. @return false if the spring has let go */
+static bool spring_keep(const Spring *spring, double change[3])
+{
+  const bool open = project(spring, change) * spring->presses > 0;
+  for (int k = 0; k < 3 && open; ++k) change[k] = 0;
+  return !open;
+}
+
+/** Finds by how much the ends have moved against each other. @return false if the spring has let go */
+static bool change_between(const Load *load, const Particles *p, double change[3])
 {
   const Spring *spring = load->own;
   for (int k = 0; k < 3; ++k)
     change[k] = mean(p, &load->selection, load->volume, p->displacement[k]) -
                 mean(p, &load->other, spring->other_volume, p->displacement[k]) - spring->from[k][0];
-  project(spring, change);
+  return spring_keep(spring, change);
 }
 
-static void change_at(const Load *load, const Particles *p, int64_t n, double change[3])
+/** Finds by how much the n-th particle has moved. @return false if the spring has let go */
+static bool change_at(const Load *load, const Particles *p, int64_t n, double change[3])
 {
   const Spring *spring = load->own;
   for (int k = 0; k < 3; ++k) change[k] = p->displacement[k][load->selection.places[n]] - spring->from[k][n];
-  project(spring, change);
+  return spring_keep(spring, change);
 }
 
 static void push_evenly(const Selection *selection, Particles *p, const double force[3], double volume)
@@ -188,11 +229,12 @@ static void add_change(const Load *load, const Particles *p, double *const v[3],
   double moved[3];
   for (int64_t n = 0; !joins(load) && n < load->selection.count; ++n) {
     const int32_t i = load->selection.places[n];
+    if (!change_at(load, p, n, moved)) continue;
     for (int k = 0; k < 3; ++k) moved[k] = v[k][i];
     project(spring, moved);
     for (int k = 0; k < 3; ++k) change[k][i] -= spring->stiffness / load->volume * moved[k];
   }
-  if (!joins(load)) return;
+  if (!joins(load) || !change_between(load, p, moved)) return;
   for (int k = 0; k < 3; ++k)
     moved[k] = mean(p, &load->selection, load->volume, v[k]) - mean(p, &load->other, spring->other_volume, v[k]);
   project(spring, moved);
@@ -229,7 +271,9 @@ static int find_point(const Load *load, const Particles *p, int64_t number, Oper
   operator_clear(point);
   point->components = 1;
   point->volume = 1;
-  point->tangent[0] = spring->stiffness;
+  double change[3];
+  const bool presses = joins(load) ? change_between(load, p, change) : change_at(load, p, n, change);
+  point->tangent[0] = presses ? spring->stiffness : 0;
   if (!joins(load)) {
     const int32_t place = load->selection.places[n];
     point->tangent[0] /= load->volume * p->volume[place];
@@ -335,6 +379,7 @@ static double magnitude(const LoadValue *value)
 }
 
 const LoadType spring_load = {.timeless = true,
+                              .may_press = true,
                               .create = create,
                               .destroy = destroy,
                               .vector = vector,
