@@ -97,7 +97,7 @@ static double slope(const Bars *b, int n, int64_t e, double *stress)
   if (b->served[n])
     tangent = points_mixed_slope(&b->points, e, b->strain[e], found = b->stress[e], b->slope[e]);
   else if (!(b->young[e] > 0))
-    found = points_try(&b->points, e, b->strain[e], &tangent);
+    found = points_try(&b->points, e, b->strain[e], 0, &tangent);
   if (stress) *stress = found;
   return tangent;
 }

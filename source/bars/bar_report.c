@@ -99,7 +99,7 @@ static double elastic_strain(const Bars *b, int64_t e)
   const Material *m = points_material(&b->points, e);
   const double straight = b->stress_held[e] / material_young(m), rounding = 1e-12;
   if (m->remote || fabs(b->strain_held[e] - b->slack[e] - straight) <= rounding * fabs(straight)) return straight;
-  return points_elastic_strain(&b->points, e, b->strain_held[e], b->slack[e]);
+  return points_elastic_strain(&b->points, e, b->strain_held[e], 0, b->slack[e]);
 }
 
 double bars_stored(const Bars *b, int64_t from, int64_t to, bool hookean)

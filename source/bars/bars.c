@@ -238,7 +238,7 @@ static void begin_under_stress(Bars *b, bool served)
   for (int n = 0; n < b->specs->count && b->has_points; ++n)
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
       if (b->young[e] > 0 || b->served[n] != served) continue;
-      const double stress = points_try(&b->points, e, 0, NULL);
+      const double stress = points_try(&b->points, e, 0, 0, NULL);
       b->slack[e] = -stress / material_young(points_material(&b->points, e));
       b->stress_held[e] = b->lowest[n] = b->highest[n] = stress;
       b->worked[e] = bars_stored(b, e, e + 1, false);

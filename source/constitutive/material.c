@@ -318,7 +318,8 @@ static int refuse(const DeckReader *reader, const MaterialSpec *spec, const char
                     name ? name : "", quote, name ? " " : "", spec->model, reason);
 }
 
-int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length)
+int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length,
+                    double dimensions)
 {
   material->name = spec->head.name;
   material->density = spec->density;
@@ -329,6 +330,8 @@ int material_create(Material *material, const DeckReader *reader, const Material
   const int at = material_parameter(law, "length"), energy = material_parameter(law, "fracture energy");
   const bool given = at >= 0 && !isnan(spec->values[at]);
   if (at >= 0 && !given) spec->values[at] = length;
+  const int wide = material_parameter(law, "dimensions");
+  if (wide >= 0 && isnan(spec->values[wide])) spec->values[wide] = dimensions;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
   if (status) return refuse(reader, spec, reason);
   material->fracture_energy = energy >= 0 ? spec->values[energy] : NAN;

@@ -37,8 +37,10 @@ typedef struct Material {
 } Material;
 
 /** Prepares a material from its section (reader->context is the LawList).
- *  @param[in] length  the formulation's, for laws that spread a fracture energy; NaN: it has none */
-int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length);
+ *  @param[in] length      the formulation's, for laws that spread a fracture energy; NaN: it has none
+ *  @param[in] dimensions  of the body; NaN: there is none */
+int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length,
+                    double dimensions);
 
 /** Strain at which bonds of the material break; infinite: never. */
 double material_failure_strain(const Material *material);

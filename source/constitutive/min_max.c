@@ -99,7 +99,8 @@ static int update(const void *constants, const breccia_batch *batch)
                                .elastic_stage = batch->elastic_stage,
                                .time = batch->time,
                                .time_step = batch->time_step,
-                               .length = batch->length ? batch->length + i : NULL};
+                               .length = batch->length ? batch->length + i : NULL,
+                               .lateral = batch->lateral ? batch->lateral + i : NULL};
     if (material_update(&c->base, &one) >= 0) return i;
   }
   return -1;

@@ -51,6 +51,11 @@ static int check_parameters(const Domain *d, const DeckReader *reader, const Mat
   return BRECCIA_OK;
 }
 
+static double material_dimensions(Space space)
+{
+  return space == SPACE_BAR ? 1 : space == SPACE_3D ? 3 : 2;
+}
+
 /** A material for the regions whose blocks are made of it. */
 static int create_material(Domain *d, const DeckReader *reader, const MaterialSpec *spec, const BondLength *of)
 {
@@ -78,7 +83,7 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
     length = region_length(type, of);
   }
   if (!type) length = region_length((type = d->regions[0].type), of);
-  if (!bad && (bad = material_create(new, reader, spec, length)))
+  if (!bad && (bad = material_create(new, reader, spec, length, material_dimensions(of->space))))
     material_destroy(new);
   else if (!bad) {
     ++d->material_count;

@@ -52,6 +52,15 @@ static bool is_linear(const Domain *d, const Region *region)
   return linear;
 }
 
+/** Returns true if a law of a region reads the elongation of bonds by the pressure across them. */
+static bool takes_lateral(const Domain *d, const Region *region)
+{
+  bool any = false;
+  for (int k = 0; k < d->material_count; ++k)
+    if (region_is_made_of(d, region, d->materials[k].name)) any |= d->materials[k].law->takes_lateral != 0;
+  return any;
+}
+
 bool domain_is_hookean(const Domain *d, const Region *region)
 {
   bool hookean = true;
@@ -82,6 +91,7 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
                      .may_give_up = may_give_up,
                      .length = region_length(region->type, of)};
   region->is_linear = is_linear(d, region);
+  spec.takes_lateral = space != SPACE_BAR && spec.components == 1 && spec.on_bonds && takes_lateral(d, region);
   if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear && !d->is_strained))
     spec.components = 0;
   if (!spec.components) spec.on_bonds = false;

@@ -170,6 +170,7 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
         sweep.strain[k] = kept ? points->strain[k] + sweep.row : change + k * BATCH;
         sweep.stress[k] = kept ? points->stress[k] + sweep.row : change + (6 + k) * BATCH;
       }
+      if (points->takes_lateral) sweep.strain[1] = change + BATCH;
       run_phases(region, group->from, group->law, &sweep, purpose);
       if (send) {
         points_send(points, sweep.row, sweep.rows, sweep.strain);

@@ -91,23 +91,37 @@ static bool toughness_is_told(const Domain *d, int block)
   return false;
 }
 
-/** Adds what a lattice of softening bonds carries in uniaxial tension along its axes and diagonals, and which strength
- * to give for the one wanted: the largest counts, as too much strength is unsafe. */
-static void toughness_add_strength(const Domain *d, const Region *region, int block, Text *text)
+/** Finds the band of a strength along the axes and diagonals of the lattice of a block. @return false if none is known */
+static bool toughness_strength_band(const Region *region, int block, int dimensions,
+                                    double (*strength)(const void *formulation, int block, const double direction[3]),
+                                    double *least, double *most)
 {
   static const double directions[][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {1, 1, 1}};
-  const int dimensions = d->body.dimensions;
-  double least = INFINITY, most = 0;
-  if (!region->type->uniaxial_strength || dimensions < 2) return;
+  *least = INFINITY;
+  *most = 0;
+  if (!strength || dimensions < 2) return false;
   for (size_t k = 0; k < sizeof directions / sizeof *directions; ++k) {
     const double *v = directions[k], length = sqrt(v[0] + v[1] + v[2]),
                  n[3] = {v[0] / length, v[1] / length, v[2] / length};
     if (dimensions == 2 && v[2] != 0) continue;
-    const double found = region->type->uniaxial_strength(region->formulation, block, n);
-    if (isnan(found)) return;
-    least = fmin(least, found);
-    most = fmax(most, found);
+    const double found = strength(region->formulation, block, n);
+    if (isnan(found)) return false;
+    *least = fmin(*least, found);
+    *most = fmax(*most, found);
   }
+  return true;
+}
+
+/** Adds what a lattice of softening bonds carries in uniaxial tension, and which strength to give for the one wanted:
+ * the largest counts, as too much strength is unsafe. And what it carries in uniaxial compression. */
+static void toughness_add_strength(const Domain *d, const Region *region, int block, Text *text)
+{
+  const int dimensions = d->body.dimensions;
+  double least, most;
+  if (toughness_strength_band(region, block, dimensions, region->type->uniaxial_crushing, &least, &most))
+    text_add(text, "%s: pressed one way a body carries %.3g to %.3g of its compressive strength by the direction\n",
+             d->body.blocks[block]->head.name, least, most);
+  if (!toughness_strength_band(region, block, dimensions, region->type->uniaxial_strength, &least, &most)) return;
   text_add(
       text,
       "%s: pulled one way a body carries %.3g to %.3g of the tensile strength of its bonds by the direction; for a "

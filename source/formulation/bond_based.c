@@ -57,6 +57,7 @@ static void destroy(void *formulation)
   free(b->range);
   free(b->surface);
   free(b->gaps);
+  free(b->around);
   places_free(&b->pull);
   places_free(&b->tension);
   places_free(&b->slope);
@@ -123,7 +124,8 @@ static void *create(const FormulationParts *parts, Error *error)
     b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
-  if (!strcmp(spec->surface_correction, "energy") && bond_correct_surface(b, error)) {
+  if ((!strcmp(spec->surface_correction, "energy") && bond_correct_surface(b, error)) ||
+      bond_lateral_create(b, error)) {
     destroy(b);
     return NULL;
   }
@@ -171,8 +173,9 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
-  const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch) : 1;
-  const double elastic = b->particles->free_strain ? bond.length * points_elastic_strain(b->points, rows[0], stretch, 0)
+  const double lateral = bond_lateral(b, place, &bond);
+  const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch, lateral) : 1;
+  const double elastic = b->particles->free_strain ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
                                                    : share * (length - bond.length);
   const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
@@ -251,6 +254,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 static void renew(void *formulation, int64_t slice)
 {
   bond_note_gaps(formulation, slice);
+  bond_lateral_renew(formulation, slice);
 }
 
 static int64_t resist(void *formulation, const Sweep *sweep)
@@ -277,7 +281,7 @@ static size_t bytes(const void *formulation)
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
          (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
          (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) +
-         (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
+         bond_lateral_bytes(b) + (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
 }
 
 const FormulationType formulation_bond_based = {
@@ -292,6 +296,10 @@ const FormulationType formulation_bond_based = {
     .destroy = destroy,
     .renew = renew,
     .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+               {.run = bond_lateral_strains,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_SHOWN,
+                .of_neighbours = OF_DISPLACEMENTS},
                {.run = bond_stretch,
                 .reads = OF_DISPLACEMENTS,
                 .writes = OF_STRAINS,
@@ -314,6 +322,7 @@ const FormulationType formulation_bond_based = {
     .characteristic_length = bond_characteristic_length,
     .crack_length = bond_crack_length,
     .uniaxial_strength = bond_uniaxial_strength,
+    .uniaxial_crushing = bond_uniaxial_crushing,
     .critical_stretch = bond_critical_stretch,
     .shown_young = bond_shown_young,
     .describe = bond_describe,

@@ -53,6 +53,7 @@ struct BondBased {
   float *surface;          /* [slots][8] surface correction; NULL: none */
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
+  double *around; /* [places][12] strains of families (bond_lateral.c); NULL: no law reads the pressure across bonds */
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;           /* [slices] 1: bonds are missing (stretch_has_gaps) */
   BondResist *resist_springs;
@@ -87,6 +88,20 @@ enum { BOND_SHOWN = STRETCH_SHOWN };
 /** Of bonds with points: stretches of a batch of rows, their pulls from stresses (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);
 int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep);
+
+/** Elongation of bonds by the pressure across them (bond_lateral.c): what it takes, after bonds of a slice have broken,
+ *  and the phase that finds the strains of families. Nothing happens where no law reads it. */
+int bond_lateral_create(BondBased *b, Error *error);
+void bond_lateral_renew(const BondBased *b, int64_t slice);
+size_t bond_lateral_bytes(const BondBased *b);
+int64_t bond_lateral_strains(void *formulation, const Sweep *sweep);
+/** Finds the elongation of the bonds of a batch of rows. @param[out] sweep  strain[1] */
+void bond_lateral_rows(const BondBased *b, const Sweep *sweep);
+/** Returns the elongation of a bond of a place; 0 where no law reads it. */
+double bond_lateral(const BondBased *b, int64_t place, const Bond *bond);
+/** Returns the elongation along a unit vector by what an elastic solid of bonds presses across it at a strain; 0 where
+ *  that pulls. */
+double bond_elongation_of_pressure(Space space, const double strain[6], const double n[3]);
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
 void bond_resist_changes(const BondBased *b, const Sweep *sweep);
@@ -125,6 +140,8 @@ double bond_characteristic_length(const BondLength *of);
 double bond_crack_length(const void *formulation, int block, const double normal[3]);
 /** FormulationType.uniaxial_strength (bond_strength.c). */
 double bond_uniaxial_strength(const void *formulation, int block, const double direction[3]);
+/** FormulationType.uniaxial_crushing (bond_strength.c). */
+double bond_uniaxial_crushing(const void *formulation, int block, const double direction[3]);
 double bond_critical_stretch(const BondLength *of, const Material *material, double energy);
 void bond_describe(const void *formulation, const Units *units, Text *text);
 

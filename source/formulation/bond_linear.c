@@ -116,10 +116,11 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
   int64_t rows[2];
   double tangent[2], own = b->per_stress[block[slice]] / 2, there = b->per_stress[block[other]] / 2;
   bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
-  const double stress = points_try(b->points, rows[0], stretch, &tangent[0]);
+  const double lateral = bond_lateral(b, place, bond),
+               stress = points_try(b->points, rows[0], stretch, lateral, &tangent[0]);
   double partner = stress;
   tangent[1] = tangent[0];
-  if (rows[1] != rows[0]) partner = points_try(b->points, rows[1], stretch, &tangent[1]);
+  if (rows[1] != rows[0]) partner = points_try(b->points, rows[1], stretch, lateral, &tangent[1]);
   *tension = own * stress + there * partner;
   *slope = own * tangent[0] + there * tangent[1];
 }

@@ -7,6 +7,7 @@ int64_t bond_stretch(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
   if (b->bonds) b->point_sweeps->stretch(b, sweep);
+  if (b->bonds) bond_lateral_rows(b, sweep);
   return -1;
 }
 

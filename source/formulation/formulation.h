@@ -115,7 +115,8 @@ typedef struct Sweep {
   int64_t first, last;
   double *carry; /* [CARRY][BATCH] numbers that one phase leaves for a later one: they need never leave the cache */
   /** Strains that are found and stresses that are answered, in a linearised step their changes: [6][places of the batch] of points on
-   *  particles. Of points on bonds [1][rows], of a batch of rows of one material; first .. last is then their slice. */
+   *  particles. Of points on bonds [1][rows], of a batch of rows of one material; first .. last is then their slice.
+   *  Where points take it (Points.takes_lateral), strain[1] is the elongation by pressure across the bond. */
   double *strain[6], *stress[6];
   int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
   int rows;
@@ -255,6 +256,10 @@ struct FormulationType {
    * over what its softening law carries. NULL: the law's own.
    *  @return NaN for particles that stand in no lattice, laws that do not soften or are in servers */
   double (*uniaxial_strength)(const void *formulation, int block, const double direction[3]);
+  /** Returns what the lattice of a block carries at most where it is pressed along a unit vector and free across it, over
+   * the compressive strength of its law. NULL: nobody knows.
+   *  @return NaN for particles that stand in no lattice, laws that tell no such strength or are in servers */
+  double (*uniaxial_crushing)(const void *formulation, int block, const double direction[3]);
   /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL:
    * none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);

@@ -103,7 +103,7 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);
   if (!deck->spec || error_count(error) > before) return BRECCIA_USER_ERROR;
   if (deck->spec->material->processes < 0) deck->spec->material->processes = 1; /* there is one point */
-  status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
+  status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN, NAN);
   deck->law = deck->material.law;
   if (!status)
     status = element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages,

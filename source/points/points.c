@@ -40,6 +40,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   *points = (Points){.components = spec->components,
                      .plane_stress = spec->plane_stress,
                      .on_bonds = spec->on_bonds,
+                     .takes_lateral = spec->takes_lateral,
                      .materials = spec->materials,
                      .material_count = spec->material_count,
                      .run_count = spec->run_count};
@@ -201,6 +202,7 @@ void points_make_batch(breccia_batch *batch, const Points *points, int64_t first
   batch->time = points->time;
   batch->time_step = points->time_step;
   batch->length = isnan(points->length[0]) ? NULL : points->length;
+  batch->lateral = points->takes_lateral ? strain[1] : NULL;
   for (int k = 0; k < 6; ++k) {
     batch->strain[k] = k < components ? strain[k] : NULL;
     batch->stress[k] = k < components ? stress[k] : NULL;
@@ -284,6 +286,7 @@ int64_t points_update(Points *points, int64_t first, int count, double *const st
     at[k] = whole[k];
     for (int i = 0; i < count; ++i) whole[k][i] = points_whole_strain(points, first + i, k, strain[k][i]);
   }
+  if (points->takes_lateral) at[1] = strain[1];
   const int64_t bad = update_with_secants(points, first, count, at, stress);
   for (int i = 0; i < count && points->plane_stress && points->components == 6; ++i)
     strain[ZZ][i] = whole[ZZ][i] - points->initial[ZZ][first + i];

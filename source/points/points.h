@@ -34,6 +34,7 @@ typedef struct Points {
   int components; /* 6 or 1; 0: there are no points, because all laws are linear */
   bool plane_stress;
   bool on_bonds; /* rows are those of a bond list; otherwise those of six components are places */
+  bool takes_lateral; /* of one component: strain[1] of updates is the elongation by pressure across (breccia_batch) */
   int64_t count;
   double *strain[6], *stress[6]; /* [count] of points of six components; NULL: points_keep_tensors */
   bool shares;                   /* these arrays, with other points */
@@ -86,7 +87,7 @@ static inline bool points_on_particles(const Points *points)
 
 typedef struct PointsSpec {
   int components;
-  bool plane_stress, on_bonds;
+  bool plane_stress, on_bonds, takes_lateral;
   bool no_tensors;       /* the formulation finds strains and stresses itself: laws are Hooke's */
   const PointsRun *runs; /* borrowed while points are made */
   int64_t run_count;
@@ -154,8 +155,9 @@ size_t points_kept_bytes(const Points *points);
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
 
 /** Stress of a point of one strain; histories stay as they are.
+ *  @param[in] lateral   elongation by the pressure across the bond (breccia_batch); 0: none
  *  @param[out] tangent  its slope, and by the elastic weight Young's modulus; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
-double points_try(const Points *points, int64_t row, double strain, double *tangent);
+double points_try(const Points *points, int64_t row, double strain, double lateral, double *tangent);
 /** Stresses and slopes of `count` rows of one strain, of one run and at most BATCH, whose law runs in a server, which is asked: a trial like that of
  *  points_update. Slopes are those that the law tells (points_mixed_slope).
  *  @return -1, or a row whose law could not be integrated */
@@ -177,9 +179,9 @@ double points_softness(const Points *points, int64_t row);
 
 /** Elastic strain of a point of one strain: its stress over the slope at which the law unloads. It has the sign of the stress.
  *  @param from  strain at which its law carried nothing at first: 0, but for steel that begins under stress */
-double points_elastic_strain(const Points *points, int64_t row, double strain, double from);
+double points_elastic_strain(const Points *points, int64_t row, double strain, double lateral, double from);
 /** The same over the strain, at most 1; below zero where the stress is against the strain, as after yielding. 1 without a strain. */
-double points_elastic_share(const Points *points, int64_t row, double strain);
+double points_elastic_share(const Points *points, int64_t row, double strain, double lateral);
 
 /** True if no law dissipates or remembers: stresses are those of the strains, to the bit. */
 bool points_are_linear(const Points *points);

@@ -7,11 +7,11 @@
 
 /** Stress of a point of one strain, from a history; one that gives up carries nothing and keeps its history.
  *  @param[out] to  [MOST_TRIED_VALUES] the history that follows */
-static double stress_from(const Points *points, int64_t row, const double *from, double strain, double *to,
-                          double *tangent)
+static double stress_from(const Points *points, int64_t row, const double *from, double strain, double lateral,
+                          double *to, double *tangent)
 {
   const Material *m = points_material(points, row);
-  double stress = NAN, *const at[1] = {&strain}, *const out[1] = {&stress};
+  double stress = NAN, *const at[2] = {&strain, &lateral}, *const out[1] = {&stress};
   breccia_batch batch;
   points_make_batch(&batch, points, row, 1, at, out);
   batch.committed = from;
@@ -31,7 +31,7 @@ double points_mixed_slope(const Points *points, int64_t row, double strain, doub
   return weight > 0 ? (1 - weight) * slope + weight * material_young(points_material(points, row)) : slope;
 }
 
-double points_try(const Points *points, int64_t row, double strain, double *tangent)
+double points_try(const Points *points, int64_t row, double strain, double lateral, double *tangent)
 {
   const Material *m = points_material(points, row);
   const double *history = points_history(points, row);
@@ -41,7 +41,7 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
     stress = point_servers_last_stress(history);
     if (tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
   } else if (m->history_values <= MOST_TRIED_VALUES) {
-    stress = stress_from(points, row, history, strain, scratch, tangent);
+    stress = stress_from(points, row, history, strain, lateral, scratch, tangent);
   }
   if (tangent) *tangent = points_mixed_slope(points, row, strain, stress, *tangent);
   return stress;
@@ -51,7 +51,8 @@ int64_t points_ask_slopes(Points *points, int64_t first, int count, double *stra
 {
   const Material *m = points_material(points, first);
   breccia_batch batch;
-  points_make_batch(&batch, points, first, count, &strain, &stress);
+  double *const at[2] = {strain, NULL}; /* laws in servers are given no pressure across */
+  points_make_batch(&batch, points, first, count, at, &stress);
   batch.tangent = slope;
   const int bad = material_update(m, &batch);
   return bad < 0 ? -1 : first + bad;
@@ -127,21 +128,21 @@ double points_softness(const Points *points, int64_t row)
   return stiffest > 0 ? 1 / fmin(1, stiffest) : 1;
 }
 
-double points_elastic_strain(const Points *points, int64_t row, double strain, double from)
+double points_elastic_strain(const Points *points, int64_t row, double strain, double lateral, double from)
 {
   const Material *m = points_material(points, row);
   if (m->remote || m->history_values > MOST_TRIED_VALUES)
-    return points_try(points, row, strain, NULL) == 0 ? 0 : points_whole_strain(points, row, XX, strain) - from;
+    return points_try(points, row, strain, lateral, NULL) == 0 ? 0 : points_whole_strain(points, row, XX, strain) - from;
   strain = points_whole_strain(points, row, XX, strain);
   /* Unloaded from where the strain has led: from the history before it a law that flows would only flow less. */
   double here[MOST_TRIED_VALUES], scratch[MOST_TRIED_VALUES];
-  const double stress = stress_from(points, row, points_history(points, row), strain, here, NULL);
+  const double stress = stress_from(points, row, points_history(points, row), strain, lateral, here, NULL);
   if (stress == 0) return 0;
   /* Steel that has yielded and is pushed back carries against its strain: that gives nothing of the way to unload. */
   const double strained = strain - from;
   const bool along = stress * strained > 0;
   const double back = 1e-3, step = along ? back * strained : back * stress / material_young(m);
-  const double drop = stress - stress_from(points, row, here, strain - step, scratch, NULL);
+  const double drop = stress - stress_from(points, row, here, strain - step, lateral, scratch, NULL);
   const double share = drop != 0 ? back * stress / drop : 0;
   /* No more than the strain, or what the first modulus makes of a stress against which plastic strain stays. */
   const double most = along ? fmax(1, stress / (material_young(m) * strained)) : 1;
@@ -149,7 +150,7 @@ double points_elastic_strain(const Points *points, int64_t row, double strain, d
   return share > 0 ? share * step / back : 0;
 }
 
-double points_elastic_share(const Points *points, int64_t row, double strain)
+double points_elastic_share(const Points *points, int64_t row, double strain, double lateral)
 {
-  return strain == 0 ? 1 : fmin(1, points_elastic_strain(points, row, strain, 0) / strain);
+  return strain == 0 ? 1 : fmin(1, points_elastic_strain(points, row, strain, lateral, 0) / strain);
 }

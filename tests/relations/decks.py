@@ -153,6 +153,7 @@ FIBRES = {
     "bilinear-softening": "Young modulus: 1e4 kPa, tensile strength: 30 kPa, fracture energy: 0.1 kN/m",
     "trilinear-softening": "Young modulus: 1e4 kPa, tensile strength: 30 kPa, fracture energy: 0.1 kN/m",
     "exponential-softening": "Young modulus: 1e4 kPa, tensile strength: 30 kPa, fracture energy: 0.2 kN/m",
+    "fib-concrete": "Young modulus: 1e4 kPa, tensile strength: 30 kPa, fracture energy: 0.2 kN/m, compressive strength: 50 kPa, peak strain: 0.01, crushing energy: 1 kN/m",
     "kent-scott-park": "compressive strength: 10 kPa, peak strain: 0.002, residual strength: 2 kPa",
     "concrete02": "compressive strength: 10 kPa, peak strain: 0.002, residual strength: 2 kPa, tensile strength: 3 kPa, tension softening: 500 kPa",
     "mander": "compressive strength: 10 kPa, peak strain: 0.002, Young modulus: 1e4 kPa, confining pressure: 1 kPa",

@@ -105,7 +105,7 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
         const Points *points = &d->regions[0].points; /* the first is of the place's own material */
         assert_ptr_equal(points_material(points, rows[0]), &points->materials[d->material[slice]]);
         assert_ptr_equal(points_material(points, rows[1]), &points->materials[d->material[bond.neighbour / SLICE]]);
-        damaged += points_try(&d->regions[0].points, rows[0], 1e-6, NULL) < 0.999 * 30e6 * 1e-6;
+        damaged += points_try(&d->regions[0].points, rows[0], 1e-6, 0, NULL) < 0.999 * 30e6 * 1e-6;
         mixed += d->material[slice] != d->material[bond.neighbour / SLICE];
       }
   assert_true(damaged > 1000 && mixed > 1000);

@@ -350,6 +350,7 @@ static void uniaxial_laws_make_no_energy(void **state)
       {"bilinear-softening", material_of("bilinear-softening", BRITTLE, NULL), 5e-4, no_gain},
       {"trilinear-softening", material_of("trilinear-softening", BRITTLE, NULL), 5e-4, no_gain},
       {"exponential-softening", material_of("exponential-softening", BRITTLE, NULL), 5e-4, no_gain},
+      {"fib-concrete", material_of("fib-concrete", BRITTLE, "compressive strength=30e3", NULL), 2e-3, no_gain},
       {"elastic-brittle", material_of("elastic-brittle", "Young modulus=30e6", "tensile strength=3000", NULL), 2e-4,
        no_gain},
       {"kent-scott-park", material_of("kent-scott-park", "compressive strength=30e3", NULL), 3e-3, no_gain},
