@@ -91,7 +91,8 @@ static bool toughness_is_told(const Domain *d, int block)
   return false;
 }
 
-/** Finds the band of a strength along the axes and diagonals of the lattice of a block. @return false if none is known */
+/** Finds the band of a strength along the axes and diagonals of the lattice of a block.
+ *  @return false if none is known */
 static bool toughness_strength_band(const Region *region, int block, int dimensions,
                                     double (*strength)(const void *formulation, int block, const double direction[3]),
                                     double *least, double *most)
@@ -114,13 +115,19 @@ static bool toughness_strength_band(const Region *region, int block, int dimensi
 
 /** Adds what a lattice of softening bonds carries in uniaxial tension, and which strength to give for the one wanted:
  * the largest counts, as too much strength is unsafe. And what it carries in uniaxial compression. */
-static void toughness_add_strength(const Domain *d, const Region *region, int block, Text *text)
+static void toughness_add_strength(const Domain *d, const Region *region, int block, const Material *m,
+                                   const Units *units, Text *text)
 {
   const int dimensions = d->body.dimensions;
   double least, most;
-  if (toughness_strength_band(region, block, dimensions, region->type->uniaxial_crushing, &least, &most))
-    text_add(text, "%s: pressed one way a body carries %.3g to %.3g of its compressive strength by the direction\n",
+  if (toughness_strength_band(region, block, dimensions, region->type->uniaxial_crushing, &least, &most)) {
+    text_add(text,
+             "%s: pressed one way a body carries %.3g to %.3g of its compressive strength by the direction; its "
+             "crushing energy is spread over ",
              d->body.blocks[block]->head.name, least, most);
+    quantity_describe(units_in_si(units, dimension_find("length"), m->length), "m", text);
+    text_add(text, "\n");
+  }
   if (!toughness_strength_band(region, block, dimensions, region->type->uniaxial_strength, &least, &most)) return;
   text_add(
       text,
@@ -151,6 +158,6 @@ void toughness_describe(const Domain *d, const FailureSpec *failure, const Units
       continue;
     }
     toughness_add(d, &t, !t.criterion || !isnan(energy), units, text);
-    toughness_add_strength(d, region, block, text);
+    toughness_add_strength(d, region, block, m, units, text);
   }
 }

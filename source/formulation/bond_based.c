@@ -175,8 +175,9 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double lateral = bond_lateral(b, place, &bond);
   const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch, lateral) : 1;
-  const double elastic = b->particles->free_strain ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
-                                                   : share * (length - bond.length);
+  const double elastic = b->particles->free_strain
+                             ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
+                             : share * (length - bond.length);
   const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }
@@ -280,8 +281,8 @@ static size_t bytes(const void *formulation)
   const BondBased *b = formulation;
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
          (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
-         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) +
-         bond_lateral_bytes(b) + (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
+         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) + bond_lateral_bytes(b) +
+         (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
 }
 
 const FormulationType formulation_bond_based = {

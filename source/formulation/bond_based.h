@@ -54,8 +54,8 @@ struct BondBased {
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   double *around; /* [places][12] strains of families (bond_lateral.c); NULL: no law reads the pressure across bonds */
-  uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;           /* [slices] 1: bonds are missing (stretch_has_gaps) */
+  uint8_t *range; /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;  /* [slices] 1: bonds are missing (stretch_has_gaps) */
   BondResist *resist_springs;
   const BondPointSweeps *point_sweeps;
 };

@@ -1,8 +1,9 @@
 /* Elongation of bonds by the pressure across them, for laws that damage bonds by what they are stretched beyond it. The
- * strain of the families of both ends, as Green-Lagrange strain of their deformation gradients less the free strain, has
- * the elastic stress of a solid of bonds
+ * strain of the families of both ends, as Green-Lagrange strain of their deformation gradients less the free strain,
+ * has the elastic stress of a solid of bonds
  *   sigma / E = s (strain + tr(strain) / 2 I),   s = 3/4 in plane stress (nu = 1/3), 4/5 else (nu = 1/4).
- * What it presses across a bond elongates the bond by Poisson's effect: nu times minus the sum of the stresses across. */
+ * What it presses across a bond elongates the bond by Poisson's effect: nu times minus the sum of the stresses
+ * across. */
 #include "base/memory.h"
 #include "base/tensor.h"
 #include "formulation/bond_based.h"
@@ -32,7 +33,8 @@ void bond_lateral_renew(const BondBased *b, int64_t slice)
 int bond_lateral_create(BondBased *b, Error *error)
 {
   if (!b->points->takes_lateral) return BRECCIA_OK;
-  b->around = memory_zeroed((size_t)(LATERAL_NUMBERS * b->particles->places), sizeof(double), "strains around bonds", error);
+  b->around =
+      memory_zeroed((size_t)(LATERAL_NUMBERS * b->particles->places), sizeof(double), "strains around bonds", error);
   if (!b->around) return BRECCIA_FAILURE;
   for (int64_t slice = 0; slice < b->particles->slices; ++slice) bond_lateral_renew(b, slice);
   return BRECCIA_OK;

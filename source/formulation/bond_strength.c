@@ -16,7 +16,8 @@ enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 200 };
  * has fallen to this share of the peak. Stresses across the pull vanish to this share of the peak. */
 static const double strength_increment = 0.02, strength_fallen = 0.9, strength_side_tolerance = 1e-6;
 
-/* Increments of the pressure, as a share of strength over Young's modulus. Sides are free to this share of the strength. */
+/* Increments of the pressure, as a share of strength over Young's modulus. Stresses across vanish to this share of the
+ * strength. */
 static const double crushing_increment = 0.05, crushing_side_tolerance = 1e-4;
 
 /** Bonds of a particle of an infinite lattice. Rows are the pull and the two directions across it. */
@@ -43,8 +44,8 @@ static void strength_free(StrengthBonds *s)
 static bool strength_reserve(StrengthBonds *s)
 {
   const size_t count = (size_t)s->count, values = count * (size_t)s->material->history_values + 1;
-  double **const rows[] = {&s->share[0], &s->share[1], &s->share[2], &s->weight, &s->strain, &s->stress,
-                          &s->length,   &s->lateral};
+  double **const rows[] = {&s->share[0], &s->share[1], &s->share[2], &s->weight,
+                           &s->strain,   &s->stress,   &s->length,   &s->lateral};
   bool made = true;
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
     made &= (*rows[k] = memory_zeroed(count, sizeof(double), "strength of bonds", NULL)) != NULL;
@@ -178,7 +179,8 @@ double bond_uniaxial_strength(const void *formulation, int block, const double n
   bool going = strength_begin(&s, b, block, n) && bond > 0;
   for (int k = 1; going && k <= STRENGTH_STEPS; ++k) {
     strain[0] = k * step;
-    going = strength_solve_sides(&s, b->body->dimensions, strength_side_tolerance * bond, strain, stress) && stress[0] > strength_fallen * most;
+    going = strength_solve_sides(&s, b->body->dimensions, strength_side_tolerance * bond, strain, stress) &&
+            stress[0] > strength_fallen * most;
     most = fmax(most, stress[0]);
     strength_commit(&s);
   }

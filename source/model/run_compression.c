@@ -100,6 +100,18 @@ void run_add_compressions(const breccia_model *model, Text *t)
   text_add(t, "],\n");
 }
 
+/** Adds the laws of one strain that crush, for one that does not. */
+static void compression_add_remedy(const breccia_law *law, Text *t)
+{
+  bool any = false;
+  for (int k = 0; law->components == 1 && breccia_law_at(k); ++k) {
+    const breccia_law *other = breccia_law_at(k);
+    if (!other->compressive_strength || other->components != 1) continue;
+    text_add(t, "%s'%s'", any ? ", " : "; a law that crushes: ", other->name);
+    any = true;
+  }
+}
+
 static void compression_tell(const breccia_model *model, int k, double strength, const char *length, Text *t)
 {
   const Material *m = &model->domain.materials[k];
@@ -113,6 +125,7 @@ static void compression_tell(const breccia_model *model, int k, double strength,
     text_add(t, "; bond of bars is given a compressive strength of ");
     quantity_describe(in_si * strength, "Pa", t);
     text_add(t, "%s", largest > strength ? ", at which the concrete would have CRUSHED" : "");
+    if (largest > strength) compression_add_remedy(m->law, t);
   }
   text_add(t, "\n");
 }

@@ -132,7 +132,8 @@ double points_elastic_strain(const Points *points, int64_t row, double strain, d
 {
   const Material *m = points_material(points, row);
   if (m->remote || m->history_values > MOST_TRIED_VALUES)
-    return points_try(points, row, strain, lateral, NULL) == 0 ? 0 : points_whole_strain(points, row, XX, strain) - from;
+    return points_try(points, row, strain, lateral, NULL) == 0 ? 0
+                                                               : points_whole_strain(points, row, XX, strain) - from;
   strain = points_whole_strain(points, row, XX, strain);
   /* Unloaded from where the strain has led: from the history before it a law that flows would only flow less. */
   double here[MOST_TRIED_VALUES], scratch[MOST_TRIED_VALUES];

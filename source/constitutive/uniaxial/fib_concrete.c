@@ -1,12 +1,13 @@
-/* Concrete along bonds that softens in tension and crushes. Tension as exponential-softening (Hobbs 2021), compression by
- * the curve of fib Model Code 2010, eq. 5.1-26, beyond its peak by an exponential fall that spends a crushing energy:
+/* Concrete along bonds that softens in tension and crushes. Tension as exponential-softening (Hobbs 2021),
+ * compression by the curve of fib Model Code 2010, eq. 5.1-26, beyond its peak by an exponential fall that spends a
+ * crushing energy:
  *   sigma_c / f = (k eta - eta^2) / (1 + (k - 2) eta),   eta = strain / peak strain, k = E peak strain / f,
  *   sigma_c / f = exp(-(strain - peak strain) f l / G_fc).
  * A point is elastic with a damage in tension and a plastic strain in compression, which both only grow, so that no
  * cycle of strain makes energy, whatever the pressure across does. Two things are those of a body, not of one bond:
  * - Pressure across a bond stretches it without stress in the body. Only what a bond is longer than that damages it.
- * - Slanted bonds still gain where those along the pressure have begun to crush. f and the peak strain of bonds are such
- *   that a body of bonds in all directions, pressed one way with its sides free, carries the strength that is given. */
+ * - Slanted bonds still gain where those along the pressure have begun to crush. f and the peak strain of bonds are
+ *   such that a body of bonds in all directions, pressed one way with its sides free, carries the strength given. */
 #include "constitutive/uniaxial/softening.h"
 #include "constitutive/uniaxial/uniaxial_law.h"
 
@@ -36,7 +37,7 @@ static const breccia_parameter fib_parameters[] = {
      "those of a single bond; those of the body when absent"},
 };
 
-/* Factors on the strain at the strength: of 0.95 of it, as fib's curve has it; how far curves are followed, in steps. */
+/* Share of the strength at which strains are compared; step and end of curves, in peak strains; least k. */
 static const double fib_near = 0.95, fib_step = 0.05, fib_reach = 8, fib_least_ratio = 1.02;
 
 static double fib_envelope(const void *constants, double x, double *slope)
@@ -119,8 +120,7 @@ static double fib_peak(const FibConcrete *c, const FibBody *body, double *near)
   *near = INFINITY;
   for (double part = fib_step; part < fib_reach; part += fib_step) {
     const double strain = part * c->strain, stress = fib_pressed(c, body, strain), wanted = fib_near * c->body;
-    if (isinf(*near) && stress >= wanted)
-      *near = strain - fib_step * c->strain * (stress - wanted) / (stress - before);
+    if (isinf(*near) && stress >= wanted) *near = strain - fib_step * c->strain * (stress - wanted) / (stress - before);
     if (stress < fib_near * most) break;
     most = fmax(most, stress);
     before = stress;
