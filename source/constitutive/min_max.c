@@ -131,6 +131,23 @@ bool material_is_beyond_limits(const Material *material, const double *history)
   return material->law == &law_min_max && history[material->history_values - 1] > 0;
 }
 
+/** Returns the material without its limits of strain. */
+static const Material *min_max_base(const Material *material)
+{
+  return material->law == &law_min_max ? &((const MinMax *)material->constants)->base : material;
+}
+
+bool material_takes_lateral(const Material *material)
+{
+  return min_max_base(material)->law->takes_lateral != 0;
+}
+
+double material_compressive_strength(const Material *material)
+{
+  const Material *base = min_max_base(material);
+  return base->law->compressive_strength ? base->law->compressive_strength(base->constants) : NAN;
+}
+
 int material_limit(Material *material, double smallest, double largest, char *reason, size_t size)
 {
   if (isnan(smallest) && isnan(largest)) return BRECCIA_OK;

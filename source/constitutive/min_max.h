@@ -9,4 +9,9 @@ extern const breccia_law law_min_max;
 /** Whether a point has failed by the limits of its strain. */
 bool material_is_beyond_limits(const Material *material, const double *history);
 
+/** Returns true if the law of a material, also inside limits of strain, reads the pressure across bonds. */
+bool material_takes_lateral(const Material *material);
+/** Returns the compressive strength that the law of a material, also inside limits of strain, tells; NaN: none. */
+double material_compressive_strength(const Material *material);
+
 #endif

@@ -1,5 +1,6 @@
 /* Points of a region: on its particles or on its bonds, in runs of one material. */
 #include "base/memory.h"
+#include "constitutive/min_max.h"
 #include "domain/regions.h"
 
 #include <stdlib.h>
@@ -57,7 +58,7 @@ static bool takes_lateral(const Domain *d, const Region *region)
 {
   bool any = false;
   for (int k = 0; k < d->material_count; ++k)
-    if (region_is_made_of(d, region, d->materials[k].name)) any |= d->materials[k].law->takes_lateral != 0;
+    if (region_is_made_of(d, region, d->materials[k].name)) any |= material_takes_lateral(&d->materials[k]);
   return any;
 }
 

@@ -270,6 +270,12 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   return -1;
 }
 
+/** Tangents of bonds do not know how the pressure across changes with the strains of families. */
+static bool takes_secants(const void *formulation)
+{
+  return ((const BondBased *)formulation)->around != NULL;
+}
+
 static FormerBonds former_bonds(const void *formulation)
 {
   const BondBased *b = formulation;
@@ -328,5 +334,6 @@ const FormulationType formulation_bond_based = {
     .shown_young = bond_shown_young,
     .describe = bond_describe,
     .former_bonds = former_bonds,
+    .takes_secants = takes_secants,
     .bytes = bytes,
 };

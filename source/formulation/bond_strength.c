@@ -5,6 +5,7 @@
  *   sigma = 1/2 sum (c / E) w L sigma_b(n . e n) n n
  * over the bonds of a particle, with the stress sigma_b of the law. */
 #include "base/memory.h"
+#include "constitutive/min_max.h"
 #include "formulation/bond_based.h"
 
 #include <math.h>
@@ -193,10 +194,9 @@ double bond_uniaxial_crushing(const void *formulation, int block, const double n
   const BondBased *b = formulation;
   const Material *m = bond_material(b, block);
   if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block) || m->remote ||
-      m->law->components != 1 || !m->law->compressive_strength)
+      m->law->components != 1 || isnan(material_compressive_strength(m)))
     return NAN;
-  const double wanted = m->law->compressive_strength(m->constants),
-               step = -crushing_increment * wanted / material_young(m);
+  const double wanted = material_compressive_strength(m), step = -crushing_increment * wanted / material_young(m);
   StrengthBonds s = {.material = m, .space = b->space};
   double strain[3] = {0}, stress[3], most = 0;
   bool going = strength_begin(&s, b, block, n);

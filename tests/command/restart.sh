@@ -190,6 +190,9 @@ profiles: {strip: {of: {all: yes}, along: x}}
 results: {number: 4, precision: double}
 pictures: []
 Y
+# the same bonds crushed: what presses across them is found again
+sed 's/exponential-softening/fib-concrete, compressive strength: 12 MPa/; s/yield stress: 2 MPa/yield stress: 40 MPa/; s/2e-5, free/-1.2e-4, free/' \
+  stages.yaml > crushed.yaml
 # ground that begins under its weight, at rest and shaken
 cat > ground.yaml <<'Y'
 units: {length: m, force: kN, time: s}
@@ -259,6 +262,10 @@ stop_at stages 4 8 16 31 44
 [ "$(json whole-stages/summary.json broken_bonds)" -gt 0 ] || fail "stages: no bond breaks, the test is too tame"
 cmp -s whole-stages/profiles/strip.csv stopped-stages/profiles/strip.csv || fail "stages: a profile differs"
 [ "$(wc -l < whole-stages/profiles/strip.csv)" = 19 ] || fail "stages: a profile of 18 layers: $(cat whole-stages/profiles/strip.csv)"
+if [ -z "${BRECCIA_SANITIZED:-}" ]; then
+  stop_at crushed 9 31
+  awk -v damage="$(json whole-crushed/summary.json dissipated)" 'BEGIN {exit !(damage > 0)}' || fail "crushed: nothing is crushed, the test is too tame"
+fi
 stop_at ground 1 4 16
 stop_at bars 1 5 9 30
 [ "$(json whole-bars/summary.json broken_bonds)" -gt 0 ] || fail "bars: no bond breaks, the test is too tame"

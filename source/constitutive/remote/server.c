@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "constitutive/min_max.h"
 #include "constitutive/remote/listener.h"
 
 #include <fcntl.h>
@@ -235,6 +236,10 @@ static ChannelStatus create(Server *s, const Frame *asked, const char *text)
   Session fresh = {0};
   ChannelStatus status;
   int bad = read_material(s, &fresh, text, asked->length, error);
+  if (!bad && material_takes_lateral(&fresh.material))
+    bad = error_add(error, BRECCIA_USER_ERROR,
+                    "'%s' reads the pressure across bonds, which servers are not told; give it as 'model'",
+                    fresh.material.law_name);
   fresh.points = asked->operation == OPERATION_CREATE ? (int64_t)asked->count : 0;
   if (!bad && fresh.points > FRAME_MOST_PAYLOAD / 64) /* all strains of a step must fit a frame */
     bad = error_add(error, BRECCIA_USER_ERROR, "%lld points are more than a server takes (%d)", (long long)fresh.points,

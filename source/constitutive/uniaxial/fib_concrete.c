@@ -219,7 +219,8 @@ static void fib_press(const FibConcrete *c, UniaxialPoint *p, double elastic)
   p->trial[FIB_CRUSHED] = -p->strain + limit / young;
 }
 
-/** A point longer than its plastic strain, by `elastic`, of which pressure across makes `lateral`. */
+/** A point longer than its plastic strain, by `elastic`, of which pressure across makes `lateral`. Pressure across
+ *  changes with the strain of the family, which the tangent of one bond does not know. */
 static void fib_pull(const FibConcrete *c, UniaxialPoint *p, double elastic, double lateral)
 {
   const Softening *t = &c->tension;
@@ -232,7 +233,8 @@ static void fib_pull(const FibConcrete *c, UniaxialPoint *p, double elastic, dou
                grown = 1 - carried / (young * own);
   if (!(grown > damage - SOFTENING_TIE)) return;
   slope = x < 1 ? t->strength * slope / (t->end - t->peak) : 0;
-  p->tangent = young * (1 - grown) + elastic * (slope - carried / own) / own;
+  /* Where something presses across, damage grows by less than the strain alone would let it: its secant is taken. */
+  p->tangent = young * (1 - grown) + (lateral > 0 ? 0 : elastic * (slope - carried / own) / own);
   if (!(grown > damage)) return;
   p->trial[FIB_DAMAGE] = grown;
   p->stress = young * elastic * (1 - grown);

@@ -84,11 +84,117 @@ static void a_prism_between_smooth_platens_crushes_at_its_strength(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Largest damage of the bonds of a body led to an even strain. */
+static double damage_at(const char *space, const char *shape, const char *field)
+{
+  breccia_model *m =
+      model_of(LAW "body: {b: {material: m, %s, spacing: 20, shape: {box: {from: %s}}}}\n"
+                   "peridynamics: {formulation: bond-based, space: %s}\n"
+                   "loads: [{on: {all: yes}, field: {displacement: %s}}]\n"
+                   "solve: {static: {increments: 1}}\n",
+               33000.0, 38.0, 0.0022, strcmp(space, "3-D") ? "thickness: 50, lattice: square" : "lattice: cubic", shape,
+               space, field);
+  step_surely(m, 1);
+  const Points *points = &m->domain.regions[0].points;
+  double most = 0;
+  for (size_t n = 0; n < points->history_size; n += 2) most = larger_of(most, points->committed[n]);
+  breccia_model_destroy(&m);
+  return most;
+}
+
+/** In pure shear the stress along a bond is 3/4 E e in plane stress and 4/5 E e else, where it is E e of the bond: damage
+ * begins where the body has f_t, up to the faces. Pulled both ways nothing presses across, and bonds have f_t themselves.
+ * f_t / E = 8.79e-5. */
+static void pressure_across_counts_in_bodies(void **state)
+{
+  (void)state;
+  static const char plane[] = "[0, 0], to: [160, 120]", solid[] = "[0, 0, 0], to: [120, 120, 120]";
+  assert_near(damage_at("plane stress", plane, "[1.15e-4 * x, -1.15e-4 * y]"), 0, 0);
+  assert_true(damage_at("plane stress", plane, "[1.19e-4 * x, -1.19e-4 * y]") > 1e-3);
+  assert_near(damage_at("plane strain", plane, "[1.08e-4 * x, -1.08e-4 * y]"), 0, 0);
+  assert_true(damage_at("plane strain", plane, "[1.12e-4 * x, -1.12e-4 * y]") > 1e-3);
+  assert_near(damage_at("3-D", solid, "[1.08e-4 * x, -1.08e-4 * y, 0]"), 0, 0);
+  assert_true(damage_at("3-D", solid, "[1.12e-4 * x, -1.12e-4 * y, 0]") > 1e-3);
+  assert_near(damage_at("plane stress", plane, "[8.7e-5 * x, 8.7e-5 * y]"), 0, 0);
+  assert_true(damage_at("plane stress", plane, "[8.9e-5 * x, 8.9e-5 * y]") > 1e-3);
+  assert_near(damage_at("plane stress", plane, "[-9e-4 * x, 3e-4 * y]"), 0, 0);
+  assert_near(damage_at("3-D", solid, "[-1e-3 * x, 2.5e-4 * y, 2.5e-4 * z]"), 0, 0);
+}
+
+/** Stress of the curve of the law once strained, compression positive, with an exponential fall that spends 35 N/mm over
+ * a length. */
+static double curve_at(double strain, double length)
+{
+  const double k = 33000 * 0.0022 / 38, eta = strain / 0.0022;
+  if (strain <= 0) return 0;
+  return eta < 1 ? 38 * (k * eta - eta * eta) / (1 + (k - 2) * eta) : 38 * exp(-(strain - 0.0022) * 38 * length / 35);
+}
+
+/** Largest force of a plane section of height 100 and width 100 at an eccentricity, without tension. */
+static double force_of_section(double eccentricity, double length)
+{
+  enum { LAYERS = 200 };
+  double most = 0;
+  for (int n = 1; n < 120; ++n) {
+    double low = 10, high = 5000, force = 0; /* height under compression */
+    for (int turn = 0; turn < 50; ++turn) {
+      const double zone = sqrt(low * high);
+      double moment = 0;
+      force = 0;
+      for (int k = 0; k < LAYERS; ++k) {
+        const double y = (k + 0.5) * 100 / LAYERS, stress = curve_at(5e-5 * n * (1 - y / zone), length);
+        force += stress * 1e4 / LAYERS;
+        moment += stress * 1e4 / LAYERS * (50 - y);
+      }
+      if (moment > eccentricity * force)
+        low = zone;
+      else
+        high = zone;
+    }
+    most = larger_of(most, force);
+  }
+  return most;
+}
+
+/** A prism of 100 mm by 200 mm pressed 15 mm off its axis, as the compression zone of a beam, which cracks on the other
+ * side: by equilibrium of plane sections 251 kN. */
+static void a_prism_pressed_off_its_axis_carries_what_its_section_does(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      LAW "  s: {model: elastic-1d, density: 7.8e-9, Young modulus: 200000}\n"
+          "body:\n"
+          "  b: {material: m, lattice: square, spacing: 10, thickness: 100, shape: {box: {from: [0, 0], to: [100, "
+          "200]}}}\n"
+          "  foot: {material: s, lattice: square, spacing: 10, thickness: 100, shape: {box: {from: [0, -30], to: [100, "
+          "0]}}}\n"
+          "  head: {material: s, lattice: square, spacing: 10, thickness: 100, shape: {box: {from: [0, 200], to: [100, "
+          "230]}}}\n"
+          "peridynamics: {formulation: bond-based, space: plane stress, surface correction: energy}\n"
+          "failure: {near grips: hold}\n"
+          "loads:\n  - {on: {nearest: [65, -25]}, displacement: [0, 0]}\n"
+          "  - {on: {nearest: [65, 225]}, displacement: [0, -0.6], history: {ramp to: 1}}\n"
+          "solve: {static: {increments: 20, method: relaxation, residual: 1e-3}}\n",
+      33000.0, 38.0, 0.0022);
+  const double told = force_of_section(15, m->domain.materials[0].length);
+  double most = 0, last = 0;
+  for (int step = 0; step < 20; ++step) {
+    step_surely(m, 1);
+    last = fabs(force_above(m, 215));
+    most = larger_of(most, last);
+  }
+  if (!(most > 0.93 * told && most < 1.05 * told)) fail_msg("%g kN, by its section %g", most / 1e3, told / 1e3);
+  assert_true(last < 0.95 * most);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lattices_crush_at_the_strength_given),
+      cmocka_unit_test(pressure_across_counts_in_bodies),
       cmocka_unit_test(a_prism_between_smooth_platens_crushes_at_its_strength),
+      cmocka_unit_test(a_prism_pressed_off_its_axis_carries_what_its_section_does),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
