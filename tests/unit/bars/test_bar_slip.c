@@ -554,9 +554,41 @@ static void words_tell_bond_and_slip(void **state)
   }
 }
 
+/** The largest compression of concrete is told beside the least compressive strength that bonds of bars give it. */
+static void the_least_strength_of_all_bonds_is_told(void **state)
+{
+  (void)state;
+  static const char *const kinds[] = {"{law: fib, compressive strength: 25 MPa, rib spacing: 8 mm}",
+                                      "{law: fib, compressive strength: 40 MPa, rib spacing: 8 mm}",
+                                      "{law: linear, stiffness: 1e7}"};
+  for (int first = 0; first < 3; ++first) {
+    breccia_model *m = model_of(
+        UNITS "materials:\n  c: {model: exponential-softening, density: 2, Young modulus: 3e7, tensile strength: 3e3, "
+              "fracture energy: 0.1}\n  " ROD "\n"
+              "body: {b: {material: c, lattice: square, spacing: 0.05, thickness: 0.1, shape: {box: {particles: [12, "
+              "8]}}}}\n"
+              "peridynamics: {formulation: bond-based, space: plane stress}\n"
+              "bars:\n  a: {points: [[0.1, 0.1], [0.5, 0.1]], area: 1e-4, material: rod, bond: %s}\n"
+              "  b: {points: [[0.1, 0.2], [0.5, 0.2]], area: 1e-4, material: rod, bond: %s}\n"
+              "  c: {points: [[0.1, 0.3], [0.5, 0.3]], area: 1e-4, material: rod, bond: %s}\n"
+              "solve: {explicit: {steps: 1}}\npictures: []\n",
+        kinds[first], kinds[(first + 1) % 3], kinds[(first + 2) % 3]);
+    for (int k = 0; k < 2; ++k) {
+      Text words = {0};
+      m->compressions.stress[0] = k ? -30e3 : -20e3;
+      run_tell_compressions(m, &words);
+      const char *strength = strstr(text_words(&words), "; bond of bars is given a compressive strength of 25 MPa");
+      if (!strength || !strstr(strength, "CRUSHED") != !k) fail_msg("order %d: %s", first, text_words(&words));
+      text_free(&words);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_least_strength_of_all_bonds_is_told),
       cmocka_unit_test(bond_follows_the_table_of_the_code),
       cmocka_unit_test(slip_that_goes_back_meets_friction),
       cmocka_unit_test(slip_of_the_other_sign_meets_the_same_stress),

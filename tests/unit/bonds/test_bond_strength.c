@@ -92,12 +92,41 @@ static void a_strip_carries_what_is_told(void **state)
   }
 }
 
+/** The strength to give bonds for a body of some strength makes up for the direction in which a lattice carries the
+ * most: it is one over the larger number of those told. */
+static void the_strongest_direction_decides(void **state)
+{
+  (void)state;
+  static const char *const lattices[] = {"square", "hexagonal"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: mm, force: N, time: s}\n"
+        "materials: {c: {model: exponential-softening, density: 2.4e-9, Young modulus: 30000, tensile strength: 3, "
+        "fracture energy: 0.1}}\n"
+        "body: {b: {material: c, lattice: %s, spacing: 5, thickness: 100, shape: {box: {particles: [12, 12]}}}}\n"
+        "peridynamics: {formulation: bond-based, space: plane stress}\nsolve: {explicit: {steps: 1}}\n",
+        lattices[k]);
+    const char *words = strstr(breccia_model_overview(m), "a body carries ");
+    double least, most, give;
+    assert_non_null(words);
+    assert_int_equal(sscanf(words,
+                            "a body carries %lf to %lf of the tensile strength of its bonds by the direction; for a "
+                            "body of some strength give the bonds at most %lf of it",
+                            &least, &most, &give),
+                     3);
+    assert_true(least <= most && (k || least < 0.99 * most));
+    assert_near(give * most, 1, 5e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(six_neighbours_carry_what_a_closed_form_says),
       cmocka_unit_test(strength_grows_with_the_length_of_softening),
       cmocka_unit_test(a_strip_carries_what_is_told),
+      cmocka_unit_test(the_strongest_direction_decides),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

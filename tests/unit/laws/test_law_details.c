@@ -469,9 +469,39 @@ static void clay_that_is_held_goes_on_as_if_it_had_not_been(void **state)
   material_destroy(&m);
 }
 
+/** Soil with friction keeps its Poisson's ratio at any pressure p at the end of the elastic stage: both moduli grow by
+ * ((p + p_r) / (p_ref + p_r))^n. The cone has its apex at p_r = 3 c / (sqrt(2) M), M = 6 sin(phi) / (3 - sin(phi)). */
+static void both_moduli_of_soil_grow_with_its_pressure(void **state)
+{
+  (void)state;
+  const double sine = sin(25 * acos(-1) / 180), apex = 3 * 10 / (sqrt(2) * 6 * sine / (3 - sine));
+  Material m = material_of("multi-yield-j2", "shear modulus=40000", "bulk modulus=90000", "cohesion=10",
+                           "friction angle=25", "reference pressure=80", "pressure exponent=0.5", NULL);
+  for (double pressure = 20; pressure < 500; pressure *= 4) {
+    const double even = -pressure / (3 * 90000.0), more = -1e-6;
+    const double first[6] = {even, even, even}, second[6] = {even + more, even + more, even + more};
+    Driver d;
+    assert_int_equal(driver_create(&d, &m, NULL), 0);
+    d.elastic = true;
+    assert_true(driver_try(&d, first));
+    driver_commit(&d);
+    assert_near(d.stress[0], -pressure, 1e-9 * pressure);
+    d.elastic = false;
+    assert_true(driver_try(&d, second));
+    const double grown = sqrt((pressure + apex) / (80 + apex)), bulk = 90000 * grown, shear = 40000 * grown;
+    assert_near(d.stress[0], -pressure + 3 * bulk * more, 1e-9 * pressure);
+    assert_near(d.tangent[0], bulk + 4 * shear / 3, 1e-9 * bulk);
+    assert_near(d.tangent[1], bulk - 2 * shear / 3, 1e-9 * bulk);
+    assert_near(d.tangent[7 * XY], shear, 1e-9 * shear);
+    driver_destroy(&d);
+  }
+  material_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(both_moduli_of_soil_grow_with_its_pressure),
       cmocka_unit_test(rows_that_take_turns_remember_what_whole_copies_do),
       cmocka_unit_test(the_tangent_of_a_law_that_relaxes_is_that_of_its_step),
       cmocka_unit_test(laws_are_told_the_time_of_the_end_of_their_step),
