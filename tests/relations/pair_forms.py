@@ -374,6 +374,71 @@ def breaking_under_free_strain(test):
         test.near(when, due, 1, 4.1e-5, f"time at which bonds with a free strain of {free} break")
 
 
+def stiffness_damping_of_rigid_motion(test):
+    """Damping in proportion to stiffness takes nothing from a rigid body: one on a spring, under any other damping too,
+    moves as without stiffness damping."""
+    for damping, extra in (
+        ("local damping: 0.3", ""),
+        ("damping: 60, local damping: 0.3", ""),
+        ("damping: 60", ""),
+        ("damping: 60", ", local error: 1e9, residual: 1e-12"),
+        ("damping: 60, scheme: HHT", ", local error: 1e9, residual: 1e-12"),
+    ):
+        seen = []
+        solver = "implicit: {end time: 4e-3, time step: 2e-4" if extra else "explicit: {time step: 2e-4, steps: 20"
+        for stiffness in ("", ", stiffness damping: 1e-4"):
+            found = test.run(
+                UNITS + "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, "
+                "shape: {box: {particles: [3, 2]}}}}\n"
+                "peridynamics: {formulation: ordinary, space: plane strain}\n"
+                "loads:\n  - {on: {all: yes}, tie: {}}\n  - {on: {all: yes}, spring: {stiffness: 300}}\n"
+                "  - {on: {all: yes}, initial velocity: {translation: [1, 0.3]}}\n"
+                f"solve: {{{solver}, {damping}{stiffness}{extra}}}}}\n" + PERIOD
+            )
+            seen.append(rows(found, "fast"))
+        test.failures.check(len(seen[0]) == 21 and seen[0][-1] < 0.97, f"{test.name}: {damping} does nothing")
+        for n, (plain, damped) in enumerate(zip(*seen)):
+            test.near(damped, plain, 1e-8, 1, f"velocity after {n} steps with {damping}")
+
+
+def loads_divided_by_blocks(test):
+    """A load on a face of two blocks of unlike materials acts as one load on the face of each block."""
+    bodies = (
+        "  b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, "
+        "shape: {box: {from: [0, 0], to: [0.4, 0.3]}}}\n"
+        "  c: {material: n, lattice: square, spacing: 0.1, thickness: 0.2, "
+        "shape: {box: {from: [0, 0.3], to: [0.4, 0.6]}}}\n"
+    )
+    faces = ("block: b, face: x+", "block: c, face: x+")
+    for load in (
+        "dashpots: {}",
+        "dashpots: {outcrop velocity: [0.2, 0.1]}",
+        "pressure: 3",
+        "traction: [2, 1]",
+        "water pressure: {surface: 0.7}",
+    ):
+        seen = []
+        for parts in (("face: x+",), faces, faces[::-1]):
+            found = test.run(
+                UNITS + "materials:\n  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}\n"
+                "  n: {model: elastic, density: 6, Young modulus: 5e4, Poisson ratio: 0.1}\nbody:\n"
+                + bodies
+                + "peridynamics: {formulation: ordinary, space: plane strain}\nloads:\n  - {on: {all: yes}, initial"
+                " velocity: {translation: [1, 0.4]}}\n"
+                + "".join(f"  - {{on: {{{part}}}, {load}}}\n" for part in parts)
+                + "solve: {explicit: {time step: 2e-4, steps: 20}}\n"
+                + PERIOD
+            )
+            seen.append([(a, b) for a, b in zip(rows(found, "fast"), rows(found, "fast", k=1))])
+        gained = max(abs(row[0] - 1) for row in seen[0])
+        test.failures.check(gained > 1e-3, f"{test.name}: {load} changes the velocity by {gained} only")
+        for other in seen[1:]:
+            for n, (whole, divided) in enumerate(zip(seen[0], other)):
+                for k in range(2):
+                    test.near(divided[k], whole[k], 1e-9, 1, f"velocity along {'xy'[k]} after {n} steps, {load}")
+
+
 FORMS = (
     implicit_steps_with_damping,
     ties_of_two_densities,
@@ -388,4 +453,6 @@ FORMS = (
     blocks_under_traps,
     spin_at_present_positions,
     breaking_under_free_strain,
+    stiffness_damping_of_rigid_motion,
+    loads_divided_by_blocks,
 )
