@@ -110,6 +110,11 @@ bracket out | awk '{exit !($1 > 90 && $1 < 105 && $2 > 99.9 && $2 < 110)}' || fa
 grep -q '^gives way: displacement grows too fast' out || fail "a bar that hardens gives way: $(cat out)"
 refused_by_rate=$("$breccia" failure hardening.yaml --load 'variables.pull=50 kN:120 kN' --rate 300 2>&1)
 contains "a larger rate" "$refused_by_rate" "does not fail under 120 kN; give a larger TO"
+# A body that has given way bears no larger load: pulled by 130 kN at most, the bar moves no further under larger loads.
+sed 's/force: \["${pull}"/force: ["${min(pull, 130 kN)}"/' hardening.yaml > stopped.yaml
+"$breccia" failure stopped.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > out 2> errors
+equal "a bar that goes no further: status" $? 0
+grep -q '^ *200 kN  gives way' out || fail "a bar that has given way bears 200 kN: $(cat out errors)"
 # Strengths of 100, 104 and 108 kN by three seeds: at least half of them fail from 104 kN on.
 sed -e 's/pull: 50 kN/pull: 50 kN, seed: 0/' -e 's/yield stress: 250 MPa/yield stress: "${250 MPa + 10 MPa * seed}"/' bar.yaml > seeds.yaml
 "$breccia" failure seeds.yaml --load 'variables.pull=90 kN:120 kN' --seed 'variables.seed=0, 1, 2' --within 0.01 > out 2> errors

@@ -103,6 +103,16 @@ flat served.yaml > flat-served.yaml
 "$breccia" run flat-served.yaml > out 2>&1 || fail "flat, served: $(cat out)"
 same flat flat-served results.vtkhdf
 
+# Free strains: a law in a server is given what is left of strains, too.
+swollen() { sed 's/^loads:/&\n  - {on: {face: x+, layers: 4}, initial strain: 2e-4, history: {ramp to: 2e-4}}/' "$1"; }
+swollen home.yaml > swollen.yaml
+swollen served.yaml > swollen-served.yaml
+"$breccia" run swollen.yaml > out 2>&1 || fail "swollen: $(cat out)"
+"$breccia" run swollen-served.yaml > out 2>&1 || fail "swollen, served: $(cat out)"
+same swollen swollen-served results.vtkhdf
+"$build/tests/compare_results" home/results.vtkhdf swollen/results.vtkhdf 1e-6 stress > /dev/null &&
+  fail "swollen: its free strain does nothing"
+
 # Bonds, each with a law of one strain.
 bonds() { deck "$1" | sed 's/correspondence, horizon/bond-based, horizon/; s/, zero-energy control: {silling: 0.1}//; s/900/2e5/g'; }
 softening='Young modulus=3e7; tensile strength=3000; fracture energy=0.1; length=0.03'
