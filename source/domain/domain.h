@@ -116,7 +116,8 @@ typedef struct Domain {
   Family family;
   Material *materials;
   int material_count;
-  int32_t *material; /* [slices] */
+  struct MaterialLengths *lengths; /* [material_count] of points on bonds (domain_lengths.c); NULL: none */
+  int32_t *material;               /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
   bool may_leave_tensors; /* nothing but pictures and the like asks for them (domain_leave_tensors) */

@@ -389,6 +389,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     if (tell_at(reader, region->name ? region->node : section_node(pd, "formulation"), status, &told)) return status;
   }
   fill_rotary(d);
+  if (domain_find_lengths(d, error)) return BRECCIA_FAILURE;
   status = create_failure(d, reader, spec->failure, &of);
   for (int r = 0; r < d->region_count && !status; ++r) status = window_create(d, &d->regions[r], error);
   return status ? status : create_forces(d, reader, spec, space);
@@ -417,6 +418,7 @@ void domain_destroy(Domain *d)
   body_destroy(&d->body);
   for (int k = 0; k < d->material_count; ++k) material_destroy(&d->materials[k]);
   free(d->materials);
+  free(d->lengths);
   free(d->material);
   free(d->batches);
   free(d->lowest);

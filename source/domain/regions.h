@@ -28,6 +28,10 @@ int domain_create_materials(Domain *domain, const DeckReader *reader, const Doma
 int region_create_points(Domain *domain, Region *region, Space space, bool may_give_up, const BondLength *of,
                          Error *error);
 
+/** Gives laws of points on bonds the lengths over which plane cracks spread a fracture energy, by their normals, unless
+ *  the deck gives one length (domain_lengths.c). Formulations are made. */
+int domain_find_lengths(Domain *domain, Error *error);
+
 /** Windows for a region whose bonds do not break, where they take less than half of what sums of all slices do. Its formulation is made. */
 int window_create(Domain *domain, Region *region, Error *error);
 void window_destroy(Window *window);

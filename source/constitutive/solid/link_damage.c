@@ -61,6 +61,8 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->update = link_damage_update_chosen();
   if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
   c->closed = closed_moduli_of(&c->elastic);
+  c->straight = 0;
+  c->lengths = (NormalLengths){0};
   const double begin = v[TENSION], young = elasticity_young(&c->elastic);
   const bool energy = !isnan(v[ENERGY]);
   *link = (breccia_link){.tension_begin = begin,
@@ -98,7 +100,9 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   link->initial_fracture_energy = bends ? v[INITIAL_ENERGY] : 0;
   link->tension_kink = isnan(v[KINK]) ? 1.0 / 3 : v[KINK];
   if (isinf(v[LENGTH])) return 0; /* links find their own */
-  link_find_ends(link, 2 * v[ENERGY] / (young * begin * v[LENGTH]));
+  c->straight = 2 * v[ENERGY] / (young * begin);
+  link_find_ends(link, c->straight / v[LENGTH]);
+  c->first_share = bends ? v[INITIAL_ENERGY] / v[ENERGY] : 1;
   link->fracture_energy = NAN;
   const double first_end = bends ? link->tension_first_end : link->tension_end;
   if (first_end > begin) return 0;
@@ -133,7 +137,7 @@ static int history_values(const void *constants)
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  static const char *const names[LINK_HISTORY] = {"tensile damage", "compressive damage", ""};
+  static const char *const names[LINK_HISTORY] = {"tensile damage", "compressive damage", "", ""};
   snprintf(name, size, "%s", names[k]);
 }
 
@@ -141,6 +145,12 @@ static int history_is_damage(const void *constants, int k)
 {
   (void)constants;
   return k == LINK_TENSILE;
+}
+
+void link_damage_take_lengths(void *constants, const NormalLengths *lengths)
+{
+  LinkLaw *c = constants;
+  if (c->straight > 0) c->lengths = *lengths;
 }
 
 static int update(const void *constants, const breccia_batch *batch)

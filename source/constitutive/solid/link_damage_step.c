@@ -4,14 +4,32 @@
 #include "constitutive/solid/link_law.h"
 #include "constitutive/solid/spectral.h"
 
-/* One lane after the other: links ask the same function (formulation/micropolar_damage). */
-LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, LinkCurve curve)
+/** Returns the curve of tension of a point that spreads the fracture energy over a length; 0: over that of the law. A
+ *  length that would make the force snap back makes it fall within a hundredth of the stretch at the peak. */
+LANES_INLINE LinkCurve link_curve_over(const LinkLaw *c, double length)
 {
-  double value[LANES], slope[LANES];
+  const double shortest = 1.01;
+  breccia_link link = c->link;
+  if (length > 0) {
+    const double straight = fmax(c->straight / length, shortest * link.tension_begin / c->first_share);
+    const double first = c->first_share, kink = link.tension_kink;
+    link.tension_first_end = first < 1 ? first * straight : 0;
+    link.tension_end = first < 1 ? (1 - (1 - kink) * first) / kink * straight : straight;
+  }
+  return link_in_tension(&link);
+}
+
+/* One lane after the other: links ask the same function (formulation/micropolar_damage). */
+LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, const LinkLaw *c, const Lanes *length)
+{
+  double value[LANES], slope[LANES], over[LANES];
+  LinkCurve curve = length ? link_in_tension(&c->link) : link_in_compression(&c->link);
   lanes_store(value, stretch.value);
+  lanes_store(over, length ? *length : lanes_set(0));
   for (int l = 0; l < LANES; ++l) {
-    slope[l] = n.end > n.first ? link_damage_slope(value[l], &curve) : 0;
-    value[l] = link_damage(value[l], &curve);
+    const LinkCurve own = over[l] > 0 ? link_curve_over(c, over[l]) : curve;
+    slope[l] = n.end > n.first ? link_damage_slope(value[l], &own) : 0;
+    value[l] = link_damage(value[l], &own);
   }
   return dual_of(n, lanes_load(value), lanes_load(slope), stretch);
 }
@@ -39,9 +57,10 @@ LANES_INLINE void find_closed_stress(DualSlopes n, const ClosedModuli *c, const 
  *  a the size of the strain of closed cracks and q = <pressure - tension> / (pressure + tension) of the principal
  *  stresses of C strain.
  *  @param[in] strain  principal strains in descending order, the variables 0, 1, 2
- *  @param[out] trial  history
+ *  @param[in] length  over which points spread the fracture energy; 0: over that of the law
+ *  @param[out] trial  history but for the length
  *  @param[out] rest  factors of C strain and of the closed stresses */
-LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committed, const Dual strain[3],
+LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committed, Lanes length, const Dual strain[3],
                             const Dual effective[3], const Dual closed[3], Lanes trial[LINK_HISTORY], Dual rest[2])
 {
   const breccia_link *l = &c->link;
@@ -55,7 +74,7 @@ LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committ
     all = dual_add(n, all, dual_absolute(n, effective[k]));
     square = dual_sum(n, square, c->closed.by_young, dual_product(n, closed[k], strain[k]));
   }
-  Dual d[2] = {damage_of(n, most, link_in_tension(l)), damage_of(n, least, link_in_compression(l))};
+  Dual d[2] = {damage_of(n, most, c, &length), damage_of(n, least, c, NULL)};
   const LaneMask beside = (d[LINK_TENSILE].value > zero) | (committed[LINK_TENSILE] > zero);
   d[LINK_COMPRESSIVE] = dual_where(n, beside, d[LINK_COMPRESSIVE]);
   for (int k = 0; k < 2; ++k) {
@@ -92,7 +111,10 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   const Dual volume = dual_add(n, dual_add(n, strain[0], strain[1]), strain[2]);
   for (int k = 0; k < 3; ++k) effective[k] = dual_sum(n, dual_scale(n, lambda, volume), twice, strain[k]);
   find_closed_stress(n, &c->closed, strain, effective, closed);
-  find_rest(n, c, p->committed, strain, effective, closed, p->trial, rest);
+  const LaneMask begins = parts.value[0] > lanes_set(c->link.tension_begin);
+  const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[LINK_LENGTH]);
+  find_rest(n, c, p->committed, p->committed[LINK_LENGTH], strain, effective, closed, p->trial, rest);
+  p->trial[LINK_LENGTH] = length;
   for (int k = 0; k < 3; ++k) {
     closed[k] = dual_product(n, rest[1], closed[k]);
     value[k] = closed[k].value;

@@ -2,6 +2,7 @@
 #ifndef BRECCIA_CONSTITUTIVE_LINK_LAW_H
 #define BRECCIA_CONSTITUTIVE_LINK_LAW_H
 
+#include "constitutive/normal_lengths.h"
 #include "constitutive/solid/solid_lanes.h"
 
 /** Moduli of principal stresses of closed cracks: E; E / (1 - nu^2) and nu E / (1 - nu^2), where one direction is open;
@@ -14,11 +15,19 @@ typedef struct LinkLaw {
   Elasticity elastic;
   breccia_link link;
   ClosedModuli closed;
+  /* 2 G_F / (E S_t), which over the length is the stretch where one line ends [length]; 0: no fracture energy; part of
+   * G_F below the first of two lines, 1: there is one. */
+  double straight, first_share;
+  NormalLengths lengths;
   SolidUpdate *update; /* for the vectors of this machine */
 } LinkLaw;
 
 /* The closing offset is the size of the strain of closed cracks at which they begin to carry pressure [strain]. */
-enum { LINK_TENSILE = 0, LINK_COMPRESSIVE, LINK_CLOSING_OFFSET, LINK_HISTORY };
+/* LINK_LENGTH is that of the crack's normal (normal_lengths.h). */
+enum { LINK_TENSILE = 0, LINK_COMPRESSIVE, LINK_CLOSING_OFFSET, LINK_LENGTH, LINK_HISTORY };
+
+/** Lets points spread the fracture energy over lengths by the normals of their cracks. */
+void link_damage_take_lengths(void *constants, const NormalLengths *lengths);
 
 LANES_CHOICE(SolidUpdate, link_damage_update)
 

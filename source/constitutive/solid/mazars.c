@@ -3,7 +3,7 @@
  * damage never heals.
  *
  * In tension D_t = 1 - k0 / k exp(-B_t (k - k0)) with 1 / B_t = G_F / (l E k0) - k0 / 2: the curve peaks at E k0 and spends G_F over the
- * length l whatever that is. In compression D_c = 1 - k0 (1 - A) / k - A exp(-B (k - k0)). */
+ * length l whatever that is; l is that of the crack's normal where the formulation tells it (normal_lengths.h). In compression D_c = 1 - k0 (1 - A) / k - A exp(-B (k - k0)). */
 #include "constitutive/solid/mazars.h"
 
 enum { STRENGTH = ELASTIC_PARAMETERS, ENERGY, COMPRESSION_SHARE, COMPRESSION_RATE, LENGTH };
@@ -30,6 +30,8 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   const double decay = v[ENERGY] / (v[LENGTH] * v[STRENGTH]) - k0 / 2;
   c->threshold = k0;
   c->tension_rate = 1 / decay;
+  c->opening = v[ENERGY] / v[STRENGTH];
+  c->lengths = (NormalLengths){0};
   c->compression_share = v[COMPRESSION_SHARE];
   c->compression_rate = v[COMPRESSION_RATE];
   c->update = mazars_update_chosen();
@@ -57,19 +59,25 @@ static int history_values(const void *constants)
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  snprintf(name, size, "%s", k == MAZARS_DAMAGE ? "material damage" : "equivalent strain");
+  static const char *const names[MAZARS_HISTORY] = {"equivalent strain", "material damage", ""};
+  snprintf(name, size, "%s", names[k]);
 }
 
 static void begin(const void *constants, double *history)
 {
   history[MAZARS_LARGEST] = ((const Mazars *)constants)->threshold;
-  history[MAZARS_DAMAGE] = 0;
+  history[MAZARS_DAMAGE] = history[MAZARS_LENGTH] = 0;
 }
 
 static int history_is_damage(const void *constants, int k)
 {
   (void)constants;
   return k == MAZARS_DAMAGE;
+}
+
+void mazars_take_lengths(void *constants, const NormalLengths *lengths)
+{
+  ((Mazars *)constants)->lengths = *lengths;
 }
 
 static int update(const void *constants, const breccia_batch *batch)

@@ -2,15 +2,22 @@
 #ifndef BRECCIA_CONSTITUTIVE_MAZARS_H
 #define BRECCIA_CONSTITUTIVE_MAZARS_H
 
+#include "constitutive/normal_lengths.h"
 #include "constitutive/solid/solid_lanes.h"
 
-enum { MAZARS_LARGEST = 0, MAZARS_DAMAGE, MAZARS_HISTORY };
+/* MAZARS_LENGTH is that of the crack's normal (normal_lengths.h). */
+enum { MAZARS_LARGEST = 0, MAZARS_DAMAGE, MAZARS_LENGTH, MAZARS_HISTORY };
 
 typedef struct Mazars {
   Elasticity elastic;
   double threshold, tension_rate, compression_share, compression_rate;
+  double opening; /* G_F / f_t */
+  NormalLengths lengths;
   SolidUpdate *update; /* for the vectors of this machine */
 } Mazars;
+
+/** Lets points spread the fracture energy over lengths by the normals of their cracks. */
+void mazars_take_lengths(void *constants, const NormalLengths *lengths);
 
 LANES_CHOICE(SolidUpdate, mazars_update)
 

@@ -3,9 +3,32 @@
 #include "constitutive/solid/mazars.h"
 #include "constitutive/solid/spectral.h"
 
-/** Principal stresses and damage at principal strains, which come as the variables 0, 1, 2. */
-LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], const Lanes *committed, Dual stress[3],
-                          Dual *largest, Dual *damage)
+/** Returns the equivalent strain. */
+LANES_INLINE Lanes mazars_equivalent(const Lanes strain[3])
+{
+  Lanes square = lanes_set(0);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes positive = lanes_where(strain[k] > lanes_set(0), strain[k]);
+    square += positive * positive;
+  }
+  return lanes_root(square);
+}
+
+/** Returns B_t for lengths of cracks; where they are 0 that for the length of the law. A length that would make the
+ *  curve snap back makes it fall over a hundredth of the strain at the peak. */
+LANES_INLINE Lanes mazars_rate(const Mazars *c, Lanes length)
+{
+  const double steepest = 0.01;
+  const LaneMask known = length > lanes_set(0);
+  const Lanes decay = lanes_set(c->opening) / lanes_choose(known, length, lanes_set(1)) - lanes_set(c->threshold / 2);
+  return lanes_choose(known, lanes_set(1) / lanes_greatest(decay, lanes_set(steepest * c->threshold)),
+                      lanes_set(c->tension_rate));
+}
+
+/** Principal stresses and damage at principal strains, which come as the variables 0, 1, 2.
+ *  @param[in] rate  B_t */
+LANES_INLINE void respond(DualSlopes n, const Mazars *c, Lanes rate, const Dual strain[3], const Lanes *committed,
+                          Dual stress[3], Dual *largest, Dual *damage)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear,
                by_others = -lambda / (twice * (3 * lambda + twice));
@@ -34,7 +57,7 @@ LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], c
   const Dual past = dual_shift(*largest, -c->threshold),
              relative = dual_quotient(n, dual_constant(lanes_set(c->threshold)), *largest);
   const Dual in_tension =
-      dual_rest(n, dual_product(n, relative, dual_exponential(n, dual_scale(n, -c->tension_rate, past))));
+      dual_rest(n, dual_product(n, relative, dual_exponential(n, dual_product(n, dual_constant(-rate), past))));
   Dual in_compression =
       dual_rest(n, dual_sum(n, dual_scale(n, 1 - c->compression_share, relative), c->compression_share,
                             dual_exponential(n, dual_scale(n, -c->compression_rate, past))));
@@ -58,8 +81,11 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   else
     spectrum_values(&apart, spectrum.value);
   Dual strain[3], stress[3], largest, damage;
+  const LaneMask begins = mazars_equivalent(spectrum.value) > lanes_set(c->threshold);
+  const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[MAZARS_LENGTH]);
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
-  respond(n, c, strain, p->committed, stress, &largest, &damage);
+  respond(n, c, mazars_rate(c, p->committed[MAZARS_LENGTH]), strain, p->committed, stress, &largest, &damage);
+  p->trial[MAZARS_LENGTH] = length;
   p->trial[MAZARS_LARGEST] = largest.value;
   p->trial[MAZARS_DAMAGE] = damage.value;
   /* Stress follows the strain itself, so that nothing is lost to the decomposition. */
