@@ -141,6 +141,19 @@ static void book(Domain *d, double energy, double share)
   d->shed_energy += (1 - share) * energy;
 }
 
+/** Books the energy at its limit of a bond that others left without anything to carry, out of what has been shed in the
+ *  step: its points have lost that energy with the members that the others were. */
+static void book_stranded(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, double shed_before)
+{
+  const Criterion *criterion = d->failure.criterion;
+  if (!criterion || !criterion->energy_at_limit) return;
+  const double inside = ((d->counted[slice * SLICE + lane] > 0) + (d->counted[neighbour] > 0)) / 2.0;
+  const double limit = criterion->energy_at_limit(&d->failure, &d->family, slice, slot, lane) / (1 + d->failure.beyond);
+  const double energy = fmin(inside * limit, fmax(0, d->shed_energy - shed_before));
+  d->fracture_energy += energy;
+  d->shed_energy -= energy;
+}
+
 static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment,
                        BreakCause cause)
 {
@@ -248,7 +261,7 @@ static void raise_limits(Domain *d, const Moment *moment)
 
 /** Breaks intact bonds that can carry nothing any more, since others around them broke: what counts bonds, and contact, should know. Slices beside
  *  broken bonds are among the suspects. @return whether there were any */
-static bool break_stranded(Domain *d, const Moment *moment)
+static bool break_stranded(Domain *d, const Moment *moment, double shed_before)
 {
   const Family *f = &d->family;
   const int64_t before = d->broken_count;
@@ -263,6 +276,7 @@ static bool break_stranded(Domain *d, const Moment *moment)
           if (kept && kept[s * SLICE + lane] & kept[neighbour]) continue;
           note_late(d, (int32_t)(s * SLICE + lane));
           note_late(d, neighbour);
+          book_stranded(d, s, slot, lane, neighbour, shed_before);
           break_bond(d, s, slot, lane, neighbour, moment, BREAK_ISOLATED);
         }
   }
@@ -271,8 +285,9 @@ static bool break_stranded(Domain *d, const Moment *moment)
 
 static void break_suspects(Domain *d, const Moment *moment)
 {
+  const double shed_before = d->shed_energy;
   judge(d, moment, BREAK_THEM);
-  while (d->broken_count > d->broken_before && !d->out_of_memory && break_stranded(d, moment)) continue;
+  while (d->broken_count > d->broken_before && !d->out_of_memory && break_stranded(d, moment, shed_before)) continue;
   uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;

@@ -1,25 +1,15 @@
 /* Toughness by direction: what plane cracks take of the lattice of a block, over the fracture energy that the deck asks
- * for (failure/crack_planes.h, docs/theory.md 4). Where bonds break at once cracks jump, and loads feel more than what
- * bonds take; how much more was measured (make bench-toughness) and is stored in one table here. */
+ * for (failure/crack_planes.h, docs/theory.md 4). Where bonds break at once running cracks take more than planes cut, and loads
+ * feel more than what bonds take: failure/crack_wake.c has what was measured. */
 #include "domain/toughness.h"
 
-#include "failure/crack_planes.h"
+#include "constitutive/normal_lengths.h"
+#include "failure/crack_wake.h"
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Work of the loads over the fracture energy asked for, in the notched strip of bench/toughness.py: lattices of the
- * plane, three directions, default horizon. */
-static const struct {
-  const char *formulation, *criterion;
-  double least, most;
-} toughness_felt[] = {
-    {"bond-based", "critical stretch", 1.4, 1.5},         {"bond-based", "critical bond energy", 1.4, 1.7},
-    {"ordinary", "critical stretch", 1.5, 1.7},           {"ordinary", "critical bond energy", 1.5, 1.7},
-    {"correspondence", "critical bond energy", 1.3, 1.4},
-};
 
 /** What makes a quantity of plane cracks through a block a share of its fracture energy. */
 typedef struct ToughnessBlock {
@@ -27,6 +17,7 @@ typedef struct ToughnessBlock {
   const Criterion *criterion; /* NULL: a law that softens */
   const Material *material;
   double limit, unit; /* of bonds; what counts 1 */
+  CrackWake wake;     /* of the criterion */
 } ToughnessBlock;
 
 static double toughness_across(const void *context, const double normal[3])
@@ -46,13 +37,23 @@ static double toughness_asked(const FailureSpec *failure, const Material *materi
   return stretch && !isnan(stretch->stretch) ? NAN : material->fracture_energy;
 }
 
-static void toughness_add_felt(const ToughnessBlock *t, Text *text)
+/** Adds what running cracks were measured to take and what loads feel, over the fracture energy.
+ *  @param[in] planes  mean of plane cracks over the fracture energy */
+static void toughness_add_measured(const ToughnessBlock *t, double planes, Text *text)
 {
-  for (size_t k = 0; t->criterion && k < sizeof toughness_felt / sizeof *toughness_felt; ++k)
-    if (!strcmp(toughness_felt[k].formulation, t->block.type->name) &&
-        !strcmp(toughness_felt[k].criterion, t->criterion->name))
-      text_add(text, "; loads feel %.3g to %.3g of it where cracks jump from bond to bond (lattice trapping)",
-               toughness_felt[k].least, toughness_felt[k].most);
+  const CrackWake *w = &t->wake;
+  if (!t->criterion) return;
+  if (!w->is_known) {
+    text_add(text, "; what running cracks take beyond that has not been measured");
+    return;
+  }
+  text_add(text,
+           "; bonds of running cracks took %.3g to %.3g of it, and loads felt %.3g to %.3g where "
+           "cracks jump from bond to bond (lattice trapping)",
+           planes * w->taken[0], planes * w->taken[1], planes * w->felt[0], planes * w->felt[1]);
+  if (!w->is_measured)
+    text_add(text, ", on a %s lattice at %.4g spacings, the nearest to yours that was measured", w->lattice,
+             w->spacings);
 }
 
 /** Adds the line of a block. */
@@ -61,6 +62,14 @@ static void toughness_add(const Domain *d, const ToughnessBlock *t, bool asked, 
   const int dimensions = d->body.dimensions;
   const CrackBand band = crack_band(dimensions, toughness_across, t);
   if (isnan(band.mean)) return;
+  if (!t->criterion && d->lengths && normal_lengths_give(t->material, NULL)) {
+    text_add(
+        text,
+        "%s: points across a crack take the fracture energy whatever its direction: each spreads it over the length "
+        "of its first principal strain, %.3g to %.3g of that across x\n",
+        d->body.blocks[t->block.block]->head.name, band.least / band.across[0], band.most / band.across[0]);
+    return;
+  }
   char unit[64] = "";
   if (!asked) units_name(units, dimension_find("fracture energy"), unit + 1, sizeof unit - 1);
   if (!asked) unit[0] = ' ';
@@ -74,7 +83,7 @@ static void toughness_add(const Domain *d, const ToughnessBlock *t, bool asked, 
   for (int k = 0; k < dimensions; ++k)
     text_add(text, "%s%.3g%s across %c", k || dimensions > 1 ? ", " : "", band.across[k], unit, "xyz"[k]);
   text_add(text, ")");
-  if (asked) toughness_add_felt(t, text);
+  if (asked && dimensions > 1) toughness_add_measured(t, band.mean, text);
   text_add(text, "\n");
 }
 
@@ -91,20 +100,49 @@ static bool toughness_is_told(const Domain *d, int block)
   return false;
 }
 
+enum { TOUGHNESS_DIRECTIONS = 7 };
+
+/** Finds axis or diagonal number k. @return false if it does not lie in the plane of the body */
+static bool toughness_direction(int k, int dimensions, double n[3])
+{
+  static const double directions[TOUGHNESS_DIRECTIONS][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0},
+                                                             {0, 1, 1}, {1, 0, 1}, {1, 1, 1}};
+  const double *v = directions[k], length = sqrt(v[0] + v[1] + v[2]);
+  for (int i = 0; i < 3; ++i) n[i] = v[i] / length;
+  return dimensions == 3 || v[2] == 0;
+}
+
+/** Adds what links across the axes and diagonals take, whose damage ends where the planes that cost least take the
+ *  fracture energy (formulation/micropolar_damage_laws.c). */
+static void toughness_add_links(const Domain *d, const ToughnessBlock *t, Text *text)
+{
+  const int dimensions = d->body.dimensions;
+  double least = INFINITY, most = 0, n[3];
+  for (int k = 0; k < TOUGHNESS_DIRECTIONS; ++k) {
+    if (!toughness_direction(k, dimensions, n)) continue;
+    const double length = crack_length_across(&t->block, n);
+    if (isnan(length)) return;
+    least = fmin(least, length);
+    most = fmax(most, length);
+  }
+  text_add(text,
+           "%s: links across a crack take the fracture energy along the planes that cost least, and up to %.3g of it "
+           "across axes and diagonals of the lattice; cracks elsewhere step from plane to plane and take more\n",
+           d->body.blocks[t->block.block]->head.name, most / least);
+}
+
 /** Finds the band of a strength along the axes and diagonals of the lattice of a block.
  *  @return false if none is known */
 static bool toughness_strength_band(const Region *region, int block, int dimensions,
                                     double (*strength)(const void *formulation, int block, const double direction[3]),
                                     double *least, double *most)
 {
-  static const double directions[][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}, {1, 1, 1}};
+  double n[3];
   *least = INFINITY;
   *most = 0;
   if (!strength || dimensions < 2) return false;
-  for (size_t k = 0; k < sizeof directions / sizeof *directions; ++k) {
-    const double *v = directions[k], length = sqrt(v[0] + v[1] + v[2]),
-                 n[3] = {v[0] / length, v[1] / length, v[2] / length};
-    if (dimensions == 2 && v[2] != 0) continue;
+  for (int k = 0; k < TOUGHNESS_DIRECTIONS; ++k) {
+    if (!toughness_direction(k, dimensions, n)) continue;
     const double found = strength(region->formulation, block, n);
     if (isnan(found)) return false;
     *least = fmin(*least, found);
@@ -145,16 +183,22 @@ void toughness_describe(const Domain *d, const FailureSpec *failure, const Units
     const Region *region = domain_region(d, s * SLICE);
     const Material *m = &d->materials[d->material[s]];
     const double limit = d->failure.limit[d->material[s]], energy = toughness_asked(failure, m);
-    ToughnessBlock t = {.block = {region->type, region->formulation, &d->family, d->failure.influence, block},
-                        .material = m,
-                        .limit = limit};
+    ToughnessBlock t = {
+        .block = {region->type, region->formulation, &d->family, d->failure.influence, block, &d->body.lattices[block]},
+        .material = m,
+        .limit = limit};
     if (m->softening_energy > 0 && m->fracture_energy > 0) {
-      if (!(m->length > 0) || !isfinite(m->length) || m->length_given) continue;
+      if (!(m->length > 0) || m->length_given) continue;
       t.unit = m->length;
     } else if (d->failure.criterion && d->failure.criterion->crack_energy && isfinite(limit)) {
       t.criterion = d->failure.criterion;
       t.unit = isnan(energy) ? 1 : energy;
+      t.wake = crack_wake(&t.block, t.criterion->name);
     } else {
+      continue;
+    }
+    if (!t.criterion && isinf(t.unit)) {
+      toughness_add_links(d, &t, text);
       continue;
     }
     toughness_add(d, &t, !t.criterion || !isnan(energy), units, text);

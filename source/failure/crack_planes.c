@@ -70,7 +70,7 @@ double crack_mean(const LimitsOf *of, int material, CrackQuantity *quantity)
   double sum = 0;
   int blocks = 0;
   for (int b = 0; b < of->body->block_count; ++b) {
-    const CrackBlock block = {of->type, of->formulation, of->family, of->lengths->influence, b};
+    const CrackBlock block = {of->type, of->formulation, of->family, of->lengths->influence, b, &of->body->lattices[b]};
     if (!of->body->lattices[b].chunks || strcmp(of->body->blocks[b]->material, of->materials[material].name) != 0)
       continue;
     const double mean = crack_band(of->body->dimensions, quantity, &block).mean;

@@ -200,6 +200,16 @@ static double measure(const Failure *failure, const Family *f, int64_t slice, in
   return of.limit > 0 ? *limit * of.held / of.limit : 0;
 }
 
+/** Returns the energy of a bond at its limit. */
+static double energy_at_limit(const Failure *failure, const Family *f, int64_t slice, int64_t slot, int lane)
+{
+  const int64_t place = slice * SLICE + lane;
+  const Bond bond = family_bond(f, slice, slot, lane);
+  const double influence = failure->influence->value(fmin(1, bond.length / f->horizon), bond.length);
+  const double limit = failure_limit(failure, place, bond.neighbour);
+  return influence > 0 && isfinite(limit) ? limit * bond.weight / influence * f->particles->volume[place] : 0;
+}
+
 /** Adds the fracture energy behind the limit, and the stretch of which a crack spends as much. */
 static void describe(const FailureSpec *failure, const LimitsOf *of, int material, double limit, const Units *units,
                      Text *text)
@@ -235,4 +245,5 @@ const Criterion criterion_critical_energy = {
     .measure = measure,
     .quantity = "bond energy",
     .power = 1,
+    .energy_at_limit = energy_at_limit,
 };

@@ -80,6 +80,8 @@ typedef struct Criterion {
                     int lane, double *limit);
   const char *quantity; /* name of the value */
   int power;            /* the energy of a bond grows with the value to this power */
+  /** Returns the energy that a bond holds at its limit. NULL: unknown. */
+  double (*energy_at_limit)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, int lane);
 } Criterion;
 
 /** @return the k-th criterion, or NULL after the last */

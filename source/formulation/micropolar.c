@@ -358,6 +358,7 @@ const FormulationType formulation_micropolar = {
     .commit = micropolar_commit,
     .history = micropolar_history,
     .characteristic_length = characteristic_length,
+    .crack_length = micropolar_crack_length,
     .half_state = half_state,
     .point_count = micropolar_point_count,
     .point = micropolar_point,

@@ -182,6 +182,7 @@ int micropolar_damage_create(Micropolar *m, Error *error);
 void micropolar_damage_destroy(Micropolar *m);
 /** Finds how the links of a block are damaged; `link` is what its law says. Says so where a fracture energy is too small for its links. */
 int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *link, Error *error);
+double micropolar_crack_length(const void *formulation, int block, const double normal[3]);
 
 /** Whether damage counts now, and some link of the slice may have any. */
 static inline bool micropolar_is_weak(const Micropolar *m, int64_t slice)

@@ -51,6 +51,14 @@ static double mean_crossing(const Micropolar *m, int block)
   return m->constants[block].crossed * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
 }
 
+/** Returns the length over which a plane crack spreads a fracture energy, as if the law of links were that of points. */
+double micropolar_crack_length(const void *formulation, int block, const double normal[3])
+{
+  const Micropolar *m = formulation;
+  if (!m->damage || !m->body->lattices[block].chunks || block_is_foreign(m->foreign, m->particles, block)) return NAN;
+  return crossing(m, block, normal) / (2 * material_young(micropolar_material(m, block)));
+}
+
 int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *link, Error *error)
 {
   if (isnan(link->fracture_energy)) return BRECCIA_OK;
