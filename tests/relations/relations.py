@@ -169,7 +169,7 @@ def compare_group(outcome, deck, variant, system, tell, file, name, a, b, order,
         share = max(deck["tolerance"], 2e-9)
         noise = (share if file == "summary" else 1e-9) * largest * growth
         if name == "stable_time_step":  # from a vector that goes by numbers of particles (docs/theory.md 8); pairwise bonds have no symmetric stiffness
-            share = 0.1 if "pairwise" in deck["text"] else 0.02 if "regions" in deck["text"] else 0.01 if "formulation: ordinary" in deck["text"] else 5e-3
+            share = 0.1 if "pairwise" in deck["text"] else 0.02 if "regions" in deck["text"] else 5e-3
         if name in ("first_broken_bond/at", "first_broken_bond/value") and variant == "a":
             return  # of those that break together the first one goes by numbers of particles, too
         if "imbalance" in name or "/left" in name or name.startswith("rest/") or "between" in name or "numerical" in name:
