@@ -16,10 +16,12 @@
  * edge, bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so
  * that nothing depends on the axes.
  *
- * With even strains right everywhere beams of few rows would bend too much: bonds at a face have their middles inside
- * of the face, where the strain of bending is less. Families that lack much of their volume therefore go without a
- * sixth of the changes, which leaves surfaces a little stiffer: tension and bending of bodies of eight rows and more
- * are both within 5 %. */
+ * With S isotropic in every family beams of few rows would bend too much: bonds at a face have their middles inside of
+ * the face, where the strain of bending is less. Families at a surface therefore keep a share a of the anisotropy r
+ * that they have without factors, and the other incomplete families j beside them take the opposite of what they keep:
+ *   sum q H / sum q = T,  T_i = a g_i r_i at the surface,  T_j = -sum_i a g_i r_i V_i / (sum of V_j of family i).
+ * The surface is stiffer and the layers below are softer by as much, so that tension stays right and bending, which
+ * weighs by the square of the distance, gets what it lacks. In bodies that have no layers below g is 0. */
 #include "formulation/ordinary.h"
 
 #include "base/lanes.h"
@@ -37,8 +39,8 @@ enum { MOST_TERMS = 15, TERM_ROOM = 16, TURNS = 5 };
 static const double damping = 0.03;          /* c, beside a trace of A of 0.8 in space and 0.6 in the plane */
 static const double most_taken = 0.5;        /* share of its factor that a family takes off a bond in one turn */
 static const double factors[2] = {0.05, 10}; /* limits of s */
-static const double most_left = 0.16;        /* share of its changes that a family at a surface goes without */
-static const double at_surface = 0.3; /* share of its volume from which on a family lacks as much as at a surface */
+static const double kept = 0.6;              /* a */
+static const double below_surface = 0.21, at_surface = 0.3; /* shares of its volume that a family lacks there */
 
 /** A component of H. */
 typedef struct FamilyTerm {
@@ -56,7 +58,9 @@ typedef struct FamilyBalance {
   double *of_patterns; /* [patterns][TERM_ROOM] H */
   int32_t *wish;       /* [places] */
   double *x;           /* [wishes][TERM_ROOM] */
-  double *left;        /* [places] share of its changes that a family goes without */
+  double *own, *goal;  /* [wishes][TERM_ROOM] r and T */
+  double *surface;     /* [places] 1: as at a surface, 0: as below or inside */
+  double *given;       /* [places] a g V over the volume of those that take the opposite */
 } FamilyBalance;
 
 static void families_list_terms(FamilyBalance *b)
@@ -237,6 +241,7 @@ static void families_wish(void *context, int64_t place)
     for (int t = 0; t < MOST_TERMS; ++t) r[t] -= q * h[t];
     if (b->wish[bond.neighbour] != WISHES_NOTHING) families_add_square(a, h, q);
   }
+  for (int t = 0; t < b->terms; ++t) r[t] += total * b->goal[(int64_t)TERM_ROOM * b->wish[place] + t];
   families_solve(b, a, r, total, x);
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!families_may_change(b, slice, slot, lane)) continue;
@@ -246,10 +251,10 @@ static void families_wish(void *context, int64_t place)
   for (int t = 0; t < MOST_TERMS && least < -most_taken; ++t) x[t] *= most_taken / -least;
 }
 
-/** Gives images what their originals wish, turned as they are. */
-static void families_mirror(void *context, int64_t place)
+/** Gives an image the components of H of its original, turned as the image is.
+ *  @param[in,out] of  [wishes][TERM_ROOM] */
+static void families_mirror(const FamilyBalance *b, int64_t place, double *of)
 {
-  const FamilyBalance *b = context;
   const Body *body = b->o->body;
   int64_t number = b->o->particles->number[place];
   bool flipped[3] = {false, false, false};
@@ -258,13 +263,19 @@ static void families_mirror(void *context, int64_t place)
     const Margin *margin = &body->margins.items[body->margin_of[number]];
     flipped[margin->axis] ^= !margin->repeats;
   }
-  const double *from = b->x + (int64_t)TERM_ROOM * b->wish[b->o->particles->place_of[number]];
-  double *x = b->x + (int64_t)TERM_ROOM * b->wish[place];
+  const double *from = of + (int64_t)TERM_ROOM * b->wish[b->o->particles->place_of[number]];
+  double *to = of + (int64_t)TERM_ROOM * b->wish[place];
   for (int t = 0; t < b->terms; ++t) {
     const int *n = b->term[t].power;
     const int turned = flipped[0] * n[0] + flipped[1] * n[1] + flipped[2] * n[2];
-    x[t] = turned % 2 ? -from[t] : from[t];
+    to[t] = turned % 2 ? -from[t] : from[t];
   }
+}
+
+static void families_mirror_wish(void *context, int64_t place)
+{
+  const FamilyBalance *b = context;
+  families_mirror(b, place, b->x);
 }
 
 static void families_change_slice(void *context, int64_t slice)
@@ -286,7 +297,7 @@ static void families_change_slice(void *context, int64_t slice)
     }
 }
 
-/* ---- how much of it ---- */
+/* ---- what they keep ---- */
 
 /** Volume of a family inside a block with its particle: of its lattice, or the largest one of particles from a file,
  *  at most that of the horizon. */
@@ -298,8 +309,8 @@ static double families_inside_volume(const Ordinary *o, int block)
                          : whole_family_volume(o->body, o->family, block, 0) / WHOLE_FAMILY_SHARE;
 }
 
-/** Finds which share of its changes each family goes without, by the share of its volume that is missing. */
-static void families_find_left(const FamilyBalance *b)
+/** Finds how much each family is one of a surface, by the share of its volume that is missing. */
+static void families_find_surface(const FamilyBalance *b)
 {
   const Ordinary *o = b->o;
   const Particles *p = o->particles;
@@ -308,26 +319,98 @@ static void families_find_left(const FamilyBalance *b)
     for (int64_t place = 0; place < p->places; ++place) {
       if (p->block[place / SLICE] != block || b->wish[place] < 0) continue;
       const int32_t original = p->place_of[body_original(o->body, p->number[place])];
-      const double missing = fmax(0, 1 - (p->volume[original] + family_volume(o->family, original)) / inside);
-      b->left[place] = most_left * fmin(1, missing / at_surface);
+      const double missing = 1 - (p->volume[original] + family_volume(o->family, original)) / inside;
+      b->surface[place] = fmax(0, fmin(1, (missing - below_surface) / (at_surface - below_surface)));
     }
   }
 }
 
-/** Takes back that share of the changes, in the mean of both ends. */
-static void families_take_back(void *context, int64_t slice)
+/** Finds the anisotropy r of a family without factors. */
+static void families_find_own(void *context, int64_t place)
 {
   const FamilyBalance *b = context;
   const Ordinary *o = b->o;
   const Family *f = o->family;
-  for (int64_t slot = f->first[slice]; o->surface[slice] && slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      if (!families_may_change(b, slice, slot, lane)) continue;
-      const int32_t neighbour = family_bond(f, slice, slot, lane).neighbour;
-      const double own = b->left[slice * SLICE + lane], other = b->wish[neighbour] >= 0 ? b->left[neighbour] : own;
-      float *factor = &o->surface[slice][(slot - f->first[slice]) * SLICE + lane];
-      *factor = (float)(1 + (1 - (own + other) / 2) * ((double)*factor - 1));
-    }
+  const int64_t slice = place / SLICE;
+  double room[TERM_ROOM], total = 0;
+  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  double *own = b->own + (int64_t)TERM_ROOM * b->wish[place];
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, (int)(place % SLICE));
+    const double *h = families_bond_products(b, slice, slot, &bond, room), q = bond.weight * bond.length * bond.length;
+    total += q;
+    for (int t = 0; t < b->terms; ++t) own[t] += q * h[t];
+  }
+  for (int t = 0; t < b->terms && total > 0; ++t) own[t] /= total;
+}
+
+/** Finds what a family keeps, over the volume of the families beside it that take the opposite. */
+static void families_find_given(void *context, int64_t place)
+{
+  const FamilyBalance *b = context;
+  const Ordinary *o = b->o;
+  const Family *f = o->family;
+  const double *volume = o->particles->volume;
+  const int64_t slice = place / SLICE;
+  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  double alike = b->surface[place] * volume[place], others = (1 - b->surface[place]) * volume[place];
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const int32_t there = family_bond(f, slice, slot, (int)(place % SLICE)).neighbour;
+    if (b->wish[there] < 0) continue;
+    alike += b->surface[there] * volume[there];
+    others += (1 - b->surface[there]) * volume[there];
+  }
+  if (others > 0 && alike > 0)
+    b->given[place] = kept * fmin(1, others / alike) * b->surface[place] * volume[place] / others;
+}
+
+static void families_mirror_own(void *context, int64_t place)
+{
+  const FamilyBalance *b = context;
+  const Particles *p = b->o->particles;
+  families_mirror(b, place, b->own);
+  if (b->wish[place] >= 0 && body_outside(b->o->body, p->number[place]))
+    b->given[place] = b->given[p->place_of[body_original(b->o->body, p->number[place])]];
+}
+
+/** Adds a share of the anisotropy of a family to a goal. */
+static void families_add_own(const FamilyBalance *b, int64_t place, double share, double *goal)
+{
+  const double *own = b->own + (int64_t)TERM_ROOM * b->wish[place];
+  for (int t = 0; t < b->terms; ++t) goal[t] += share * own[t];
+}
+
+/** Finds the goal T of a family. */
+static void families_find_goal(void *context, int64_t place)
+{
+  const FamilyBalance *b = context;
+  const Ordinary *o = b->o;
+  const Family *f = o->family;
+  const double *volume = o->particles->volume;
+  const int64_t slice = place / SLICE;
+  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  const double inner = 1 - b->surface[place];
+  double *goal = b->goal + (int64_t)TERM_ROOM * b->wish[place], others = inner * volume[place];
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const int32_t there = family_bond(f, slice, slot, (int)(place % SLICE)).neighbour;
+    if (b->wish[there] < 0) continue;
+    families_add_own(b, there, -b->given[there] * inner, goal);
+    others += (1 - b->surface[there]) * volume[there];
+  }
+  families_add_own(b, place, b->given[place] * (others / volume[place] - inner), goal);
+}
+
+static void families_find_goals(const FamilyBalance *b)
+{
+  const int64_t places = b->o->particles->places;
+  families_find_surface(b);
+  team_each(places, families_find_own, (void *)(uintptr_t)b);
+  team_each(places, families_find_given, (void *)(uintptr_t)b);
+  if (b->o->body->margin_of) team_each(places, families_mirror_own, (void *)(uintptr_t)b);
+  team_each(places, families_find_goal, (void *)(uintptr_t)b);
 }
 
 int ordinary_balance_families(Ordinary *o, Error *error)
@@ -335,8 +418,6 @@ int ordinary_balance_families(Ordinary *o, Error *error)
   const int64_t places = o->particles->places;
   const Family *f = o->family;
   FamilyBalance b = {.o = o};
-  /* With images beside other formulations the stiffness was found to be unsymmetric, for a cause that is not known. */
-  if (o->foreign && o->body->margin_of) return BRECCIA_OK;
   families_list_terms(&b);
   b.wish = memory_zeroed((size_t)places, sizeof *b.wish, "bond constants", error);
   b.of_patterns = memory_zeroed((size_t)f->pattern_count * TERM_ROOM + 1, sizeof(double), "bond constants", error);
@@ -351,22 +432,25 @@ int ordinary_balance_families(Ordinary *o, Error *error)
   }
   if (!failed && count) {
     b.x = memory_zeroed((size_t)count * TERM_ROOM, sizeof(double), "bond constants", error);
-    b.left = memory_zeroed((size_t)places, sizeof *b.left, "bond constants", error);
-    failed = !b.x || !b.left || families_make_factors(&b, error);
+    b.own = memory_zeroed((size_t)count * TERM_ROOM, sizeof(double), "bond constants", error);
+    b.goal = memory_zeroed((size_t)count * TERM_ROOM, sizeof(double), "bond constants", error);
+    b.surface = memory_zeroed((size_t)places, sizeof *b.surface, "bond constants", error);
+    b.given = memory_zeroed((size_t)places, sizeof *b.given, "bond constants", error);
+    failed = !b.x || !b.own || !b.goal || !b.surface || !b.given || families_make_factors(&b, error);
+    if (!failed) families_find_goals(&b);
     for (int turn = 0; turn < TURNS && !failed; ++turn) {
       team_each(places, families_wish, &b);
-      if (o->body->margin_of) team_each(places, families_mirror, &b);
+      if (o->body->margin_of) team_each(places, families_mirror_wish, &b);
       team_each(o->particles->slices, families_change_slice, &b);
-    }
-    if (!failed) {
-      families_find_left(&b);
-      team_each(o->particles->slices, families_take_back, &b);
     }
   }
   free(b.wish);
   free(b.of_patterns);
   free(b.x);
-  free(b.left);
+  free(b.own);
+  free(b.goal);
+  free(b.surface);
+  free(b.given);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 

@@ -62,10 +62,10 @@ static void bars_of_few_rows_are_as_long_as_hooke_says(void **state)
   static const struct {
     const char *space;
     int rows;
-    double poisson, within;
-  } cases[] = {{"3-D", 6, 0.25, 0.07},          {"3-D", 8, 0.1, 0.05},           {"3-D", 8, 0.4, 0.06},
-               {"plane stress", 4, 0.25, 0.06}, {"plane stress", 8, 0.2, 0.025}, {"plane stress", 6, 0.4, 0.025},
-               {"plane strain", 4, 0.1, 0.06},  {"plane strain", 6, 0.4, 0.03}};
+    double poisson;
+  } cases[] = {{"3-D", 4, 0.25},         {"3-D", 4, 0.4},           {"3-D", 6, 0.25},
+               {"3-D", 8, 0.1},          {"plane stress", 4, 0.25}, {"plane stress", 8, 0.2},
+               {"plane stress", 6, 0.4}, {"plane strain", 4, 0.1},  {"plane strain", 6, 0.4}};
   const double along[2] = {1, 0};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     breccia_model *m = pulled(cases[k].space, cases[k].rows, cases[k].poisson, "");
@@ -73,8 +73,7 @@ static void bars_of_few_rows_are_as_long_as_hooke_says(void **state)
         strcmp(cases[k].space, "plane strain") ? young : young / (1 - cases[k].poisson * cases[k].poisson);
     const double found = strain_of(m, along, 5 * cases[k].rows) * modulus / traction;
     print_message("%s, %d rows, Poisson ratio %g: %.3f\n", cases[k].space, cases[k].rows, cases[k].poisson, found);
-    if (fabs(found - 1) > cases[k].within)
-      fail_msg("%s, %d rows: %g of the strain", cases[k].space, cases[k].rows, found);
+    if (fabs(found - 1) > 0.03) fail_msg("%s, %d rows: %g of the strain", cases[k].space, cases[k].rows, found);
     breccia_model_destroy(&m);
   }
 }
@@ -103,18 +102,19 @@ static double bent_cantilever(int rows, double horizon, double poisson)
 
 /** Bonds at a face have their middles inside of it, where bending strains less: with even strains right everywhere
  *  eight rows would bend by 9 % too much, with weights of the lattice alone by 15 % too little. */
-static void beams_of_eight_rows_bend_as_timoshenko_says(void **state)
+static void beams_of_few_rows_bend_as_timoshenko_says(void **state)
 {
   (void)state;
   static const struct {
     int rows;
-    double horizon, poisson;
-  } cases[] = {{8, 3.015, 0.2}, {8, 3.015, 1. / 3}, {8, 2.015, 0.2}, {12, 3.015, 0.2}};
+    double horizon, poisson, within;
+  } cases[] = {{4, 3.015, 0.2, 0.1},     {6, 3.015, 0.2, 0.04}, {8, 3.015, 0.2, 0.02},
+               {8, 3.015, 1. / 3, 0.02}, {8, 2.015, 0.2, 0.02}, {16, 3.015, 0.2, 0.02}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     const double found = bent_cantilever(cases[k].rows, cases[k].horizon, cases[k].poisson);
     print_message("%d rows, horizon of %g, Poisson ratio %g: %.3f\n", cases[k].rows, cases[k].horizon, cases[k].poisson,
                   found);
-    assert_near(found, 1, 0.05);
+    assert_near(found, 1, cases[k].within);
   }
 }
 
@@ -171,6 +171,50 @@ static void halves_of_bars_move_as_whole_ones(void **state)
   for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
 }
 
+/** A bar of an ordinary and another block, and its half beyond a plane of symmetry: images of ordinary families beside
+ *  the other block have the factors of their originals. The stiffness is symmetric: works of two states in each other are
+ *  equal. Without the factors the bar beside images was as stiff as the lattice inside, and its half was not the whole. */
+static void halves_of_bars_of_two_formulations_move_as_whole_ones(void **state)
+{
+  (void)state;
+  static const char *const others[] = {"correspondence", "bond-based, calibration: uniform-expansion"};
+  static const char *const loads[] = {
+      "  - {on: {nearest: [0.5, 0.5, 0.5]}, displacement: [free, 0, 0]}\n"
+      "  - {on: {nearest: [0.5, 2.5, 0.5]}, displacement: [free, free, 0]}\n",
+      "  - {on: {block: a, face: y-}, support: {held: across}}\n"
+      "  - {on: {block: b, face: y-}, support: {held: across}}\n  - {on: {nearest: [0.5, 0.5, "
+      "0.5]}, displacement: [free, free, 0]}\n"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *models[2];
+    for (int half = 0; half < 2; ++half) {
+      models[half] =
+          model_of("materials:\n  m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}\n"
+                   "  n: {%s, density: 1, Young modulus: 150}\n"
+                   "peridynamics: {formulation: ordinary, regions: {other: {blocks: [b], formulation: %s}}}\n"
+                   "body:\n  a: {material: m, spacing: 1, shape: {box: {from: [0, %d, 0], to: [5, 3, 3]}}}\n"
+                   "  b: {material: n, spacing: 1, shape: {box: {from: [5, %d, 0], to: [10, 3, 3]}}}\n"
+                   "loads:\n  - {on: {face: x-}, displacement: [0, free, free]}\n%s"
+                   "  - {on: {face: x+, layers: 2}, traction: [1e-3, 0, 0]}\n"
+                   "solve: {static: {increments: 1, residual: 1e-10}}\n",
+                   k ? "model: elastic-1d" : "model: elastic, Poisson ratio: 0.25", others[k], half ? 0 : -3,
+                   half ? 0 : -3, loads[half]);
+      step_surely(models[half], 1);
+    }
+    const Particles *whole = models[0]->domain.particles, *part = models[1]->domain.particles;
+    int count = 0;
+    for (int32_t n = 0; n < part->count; ++n) {
+      const int32_t i = part->place_of[n];
+      if (body_outside(&models[1]->domain.body, n)) continue;
+      const double at[3] = {part->position[0][i], part->position[1][i], part->position[2][i]};
+      const double other = whole->displacement[0][particles_nearest(whole, at)];
+      ++count;
+      if (at[0] > 2) assert_near(part->displacement[0][i] / other, 1, 1e-6);
+    }
+    assert_int_equal(count, 10 * 3 * 3);
+    for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
+  }
+}
+
 /** Writes a strip of rows, every second one shifted by half of a spacing, turned by an angle. */
 static void write_strip(int columns, int rows, double turn)
 {
@@ -225,7 +269,7 @@ static void shifted_rows_from_files_have_the_energy_of_hooke(void **state)
   for (int k = 0; k < 2; ++k) {
     const double straight = stretched_strip(0, poisson[k]), turned = stretched_strip(0.64, poisson[k]);
     print_message("Poisson ratio %g: %.4f of the energy, turned %.4f\n", poisson[k], straight, turned);
-    assert_near(straight, 1, 0.05);
+    assert_near(straight, 1, 0.02);
     assert_near(turned, straight, 1e-6);
   }
 }
@@ -234,9 +278,10 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bars_of_few_rows_are_as_long_as_hooke_says),
-      cmocka_unit_test(beams_of_eight_rows_bend_as_timoshenko_says),
+      cmocka_unit_test(beams_of_few_rows_bend_as_timoshenko_says),
       cmocka_unit_test(check_tells_how_stiff_a_thin_body_is),
       cmocka_unit_test(halves_of_bars_move_as_whole_ones),
+      cmocka_unit_test(halves_of_bars_of_two_formulations_move_as_whole_ones),
       cmocka_unit_test(shifted_rows_from_files_have_the_energy_of_hooke),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -94,7 +94,7 @@ static void it_finds_the_rest_that_newton_finds(void **state)
         strongest = larger_of(strongest, p->volume[i] * fabs(p->internal[k][i]));
       }
     if (!(most <= 1e-5 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
-    if (!(force <= 3e-5 * strongest)) fail_msg("%s: forces differ by %g of %g", cases[c].name, force, strongest);
+    if (!(force <= 1e-5 * strongest)) fail_msg("%s: forces differ by %g of %g", cases[c].name, force, strongest);
     assert_int_equal(breccia_model_broken_bonds(newton), breccia_model_broken_bonds(relaxed));
     assert_true(largest > 0 && (breccia_model_broken_bonds(newton) > 0) == cases[c].breaks);
     assert_near(solver_energy(&relaxed->solver).dissipated, solver_energy(&newton->solver).dissipated,

@@ -30,7 +30,9 @@ static void a_crack_takes_the_same_however_bonds_are_overloaded(void **state)
     double limit;
     /* Increments that overload bonds. */
     int few;
-    /* Difference of fracture energies. Bonds of one family share their energy: the share at the limits is a mean. */
+    /* Difference of fracture energies. The energy of an ordinary bond at its limit depends on the dilatations of its
+     * families. Of bonds that one increment overloads together these are the means over the increment; of bonds that break
+     * one by one they have fallen with the bonds beside them. */
     double close;
   } cracks[] = {{"bond-based", "critical stretch: 0.004", 0, 1, 1e-9},
                 {"bond-based", "criterion: critical bond energy, bond energy: 21", 21 * 0.002 * 0.002, 1, 1e-9},
@@ -50,6 +52,7 @@ static void a_crack_takes_the_same_however_bonds_are_overloaded(void **state)
     assert_true(broken[0] > 0 && (broken[0] == broken[1] || cracks[k].few > 1));
     assert_near(found[1].fracture / found[0].fracture, 1, cracks[k].close);
     if (cracks[k].limit > 0) assert_near(found[0].fracture / (cracks[k].limit * (double)broken[0]), 1, 1e-9);
+    /* Ten increments overload bonds by about the energy of their limits, one by far more. */
     assert_true(found[0].shed > 0.8 * found[0].fracture);
     assert_true(found[1].shed < 0.1 * found[1].fracture);
     for (int n = 0; n < 2; ++n) assert_true(found[n].imbalance < 0.01);
