@@ -41,7 +41,16 @@ static const Field load_fields[] = {
      .dimension = "area",
      .standard = "",
      .range = "(0, inf)",
-     .meaning = "of a traction: the area that all its particles have together, where they are no face of a lattice"},
+     .meaning =
+         "of a traction, a pressure or a water pressure on particles from a file: the area of the face that they "
+         "stand at. On a plane face of one block the force is spread over the particles behind it such that "
+         "force and moments are those of the face; elsewhere particles take shares by volume"},
+    {.key = "centre",
+     .kind = FIELD_POINT,
+     .offset = offsetof(LoadSpec, centre),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "beside 'area': the centre of the face; when absent that of the volumes of the particles behind it"},
     {.key = "spread",
      .kind = FIELD_CHOICE,
      .offset = offsetof(LoadSpec, spread),
@@ -105,9 +114,13 @@ static void check_load(const DeckReader *reader, void *section)
   if (load->history && types[k]->timeless)
     node_error(reader->document, section_node(load, "history"), reader->error,
                "history: '%s' does not vary in time; leave it out", load_fields[OTHERS + k].key);
-  if (!isnan(load->area) && k != LOAD_traction)
-    node_error(reader->document, section_node(load, "area"), reader->error, "area: only a 'traction' has one");
-  if (load->spread && k != LOAD_traction && k != LOAD_pressure && k != LOAD_water_pressure)
+  const bool on_face = k == LOAD_traction || k == LOAD_pressure || k == LOAD_water_pressure;
+  if (!isnan(load->area) && !on_face)
+    node_error(reader->document, section_node(load, "area"), reader->error,
+               "area: only a 'traction' has one, and a pressure on particles from a file");
+  if (node_get(load->head.node, "centre") && isnan(load->area))
+    node_error(reader->document, section_node(load, "centre"), reader->error, "centre: needs the 'area' of the face");
+  if (load->spread && !on_face)
     node_error(reader->document, section_node(load, "spread"), reader->error,
                "spread: only of a traction, a pressure or a water pressure");
   if (load->platen && !types[k]->platen)

@@ -29,7 +29,7 @@ typedef struct LoadSpec {
   Reference on;
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
-  double area;
+  double area, centre[3];
   const char *spread, *platen;
   bool only_presses;
 } LoadSpec;
@@ -158,6 +158,11 @@ typedef struct LoadWords {
 typedef struct EvenStress {
   void (*find)(const void *domain, const uint8_t *marked, double *const area[3]);
   const void *domain;
+  /** Finds the force per volume that all particles bring along an axis in an even uniaxial stress of 1 along the axis.
+   *  @param[out] force  [places]
+   *  @return false: bodies of this formulation do not tell, or there is no memory */
+  bool (*pull)(void *model, int axis, double *force);
+  void *model;
 } EvenStress;
 
 /** What the making of loads needs. */

@@ -7,6 +7,7 @@
 #include "loading/support.h"
 #include "model/plausibility.h"
 #include "model/sized.h"
+#include "solver/aside.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -153,6 +154,54 @@ static void even_stress(const void *domain, const uint8_t *marked, double *const
   domain_even_stress(domain, marked, area);
 }
 
+/** Sets the displacements of an even uniaxial stress along an axis, with a strain of the given size along the axis. */
+static void set_even_pull(const breccia_model *model, int axis, double size, double *const displacement[3])
+{
+  const Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  const bool plane_strain = peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRAIN;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const bool bonds = !strcmp(domain_region(d, i)->type->name, "bond-based"), solid = d->body.dimensions == 3;
+    const double poisson = bonds ? 0.25 : material_poisson(&d->materials[d->material[i / SLICE]]);
+    const bool wide = !solid && (bonds || plane_strain);
+    const double across = wide ? poisson / (1 - poisson) : poisson;
+    for (int k = 0; k < d->body.dimensions; ++k)
+      displacement[k][i] = size * (k == axis ? 1 : -across) * p->position[k][i];
+  }
+}
+
+/** Implements EvenStress.pull by an evaluation of forces; forces beside bonds are left out. */
+static bool even_pull(void *context, int axis, double *force)
+{
+  const double size = 1e-7;
+  breccia_model *model = context;
+  Domain *d = &model->domain;
+  Aside aside;
+  double *beside[3] = {0};
+  bool done = aside_create(&aside, d, "faces", NULL) == BRECCIA_OK;
+  for (int k = 0; k < 3; ++k) done &= (beside[k] = places_array(d->particles->places, "faces", NULL)) != NULL;
+  if (done) {
+    const bool elastic = domain_in_elastic_stage(d);
+    domain_set_elastic_stage(d, true);
+    set_even_pull(model, axis, size, aside.displacement);
+    aside_exchange(&aside, d);
+    domain_evaluate(d);
+    domain_forces_beside(d, beside);
+    aside_exchange(&aside, d);
+    domain_set_elastic_stage(d, elastic);
+    domain_show_states(d);
+    for (int32_t n = 0; n < d->particles->count; ++n) {
+      const int32_t i = d->particles->place_of[n];
+      force[i] =
+          (aside.internal[axis][i] - beside[axis][i]) / (size * material_young(&d->materials[d->material[i / SLICE]]));
+    }
+  }
+  for (int k = 0; k < 3; ++k) places_free(&beside[k]);
+  aside_destroy(&aside);
+  return done;
+}
+
 static int create_loading(breccia_model *model, Error *error)
 {
   const DeckSpec *spec = model->spec;
@@ -165,7 +214,7 @@ static int create_loading(breccia_model *model, Error *error)
   const LoadMaking making = {.loading = &model->loading,
                              .body = &model->domain.body,
                              .family = &model->domain.family,
-                             .even_stress = {even_stress, &model->domain},
+                             .even_stress = {even_stress, &model->domain, even_pull, model},
                              .reader = &model->reader,
                              .selections = &spec->selections,
                              .materials = model->domain.materials,

@@ -18,7 +18,7 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
   const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
   const double area = load->spec->area;
   *face = (Face){0};
-  if ((!on || !on->face) && isnan(area))
+  if ((!on || !on->face) && (isnan(area) || load->node->key[0] != 't'))
     return node_error(reader->document, load->node, reader->error,
                       "%s: acts on a face: 'on' must say which, like {face: x+}%s", load->node->key,
                       load->node->key[0] == 't' ? ", or 'area' how large it is" : "");
@@ -29,12 +29,17 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int64_t slice = load->selection.places[n] / SLICE;
     const int b = p->block[slice];
+    if (!isnan(area) && load->node->key[0] != 't' && !body->blocks[b]->file)
+      return node_error(reader->document, section_node(load->spec, "area"), reader->error,
+                        "area: only a 'traction' has one, and a pressure on particles from a file; block '%s' is a "
+                        "lattice, of which the area is known",
+                        body->blocks[b]->head.name);
     face->per_depth[slice] =
         !isnan(area) ? area / load->volume : 1 / depth_of(&body->lattices[b], body->blocks[b], face->axis, on->layers);
     if (isnan(face->per_depth[slice]))
       return node_error(reader->document, load->node, reader->error,
                         "%s: the particles of block '%s' come from a file, so that the area of its face is not known; "
-                        "take 'traction' with 'area'",
+                        "give its 'area'",
                         load->node->key, body->blocks[b]->head.name);
   }
   return BRECCIA_OK;
@@ -52,6 +57,9 @@ void face_destroy(Face *face)
 double face_force(const Face *face, const Load *load, const Particles *p, const double *value)
 {
   double sum = 0;
+  for (int64_t n = 0; face->scattered && n < face->count; ++n)
+    sum += (value ? value[n] : 1) * p->volume[face->place[n]] * face->per_volume[n];
+  if (face->scattered) return sum;
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t place = load->selection.places[n];
     sum += (value ? value[n] : 1) * p->volume[place] * face->per_depth[place / SLICE];

@@ -196,10 +196,12 @@ int face_spread(Face *face, Load *load, const LoadMaking *making)
   const DeckReader *reader = making->reader;
   const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
   const bool can = on && on->face && on->layers == 1 && isnan(load->spec->area) && making->family->first;
+  bool done = false;
+  if (!told && face_spread_scattered(face, load, making, &done)) return BRECCIA_FAILURE;
+  if (done) return BRECCIA_OK;
   if (told ? told[0] == 'l' : !can) return spread_over_layers(face, load, making);
-  bool any = false;
-  const int status = can ? spread_by_bonds(face, load, making, &any) : BRECCIA_OK;
-  if (status || any || !told) return status;
+  const int status = can ? spread_by_bonds(face, load, making, &done) : BRECCIA_OK;
+  if (status || done || !told) return status;
   return node_error(
       reader->document, section_node(load->spec, "spread"), reader->error,
       "spread: bonds tell where forces act behind one layer of a face of a square or cubic lattice with "

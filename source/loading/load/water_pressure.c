@@ -47,18 +47,22 @@ static int create(Load *load, const LoadMaking *making)
   int status = face_create(&own->face, load, making);
   if (!status) status = face_spread(&own->face, load, making);
   if (status) return status;
-  own->pressure = memory_zeroed((size_t)load->selection.count, sizeof(double), "water pressure", reader->error);
+  const Face *face = &own->face;
+  const int64_t count = face->scattered ? face->count : load->selection.count;
+  own->pressure = memory_zeroed((size_t)count, sizeof(double), "water pressure", reader->error);
   if (!own->pressure) return BRECCIA_FAILURE;
   const int up = making->body->dimensions - 1;
   double deepest = 0;
-  for (int64_t n = 0; n < load->selection.count; ++n) {
-    own->pressure[n] = s->unit_weight * fmax(0, s->surface - p->position[up][load->selection.places[n]]);
+  for (int64_t n = 0; n < count; ++n) {
+    const int32_t place = face->scattered ? face->place[n] : load->selection.places[n];
+    const double height = face->scattered && face->axis == up ? face->plane : p->position[up][place];
+    own->pressure[n] = s->unit_weight * fmax(0, s->surface - height);
     deepest = fmax(deepest, own->pressure[n]);
   }
   if (deepest == 0)
     return node_error(reader->document, section_node(s, "surface"), reader->error,
                       "surface: all particles of the face stand above it");
-  return face_balance(&own->face, load, p, own->pressure, reader->error);
+  return face->scattered ? BRECCIA_OK : face_balance(&own->face, load, p, own->pressure, reader->error);
 }
 
 static void destroy(Load *load)

@@ -1,0 +1,358 @@
+/* Forces on a plane face of particles from files.
+ *
+ * The outermost particles of a scattered body stand at several distances from the face, and a layer of them holds only
+ * some. The force on the face is therefore spread over all particles behind the face, down to twice the horizon. The
+ * first estimate of their areas is what bonds cut off by the face would bring in an even stress (EvenStress), so that an
+ * even stress reaches up to the face, or, in bodies too thin for that, their volume times
+ *   q(z) = (1 - z^2 / D^2)^((d + 1) / 2),
+ * the share of the bonds of a particle at the depth z < D that reach through a plane; D is the horizon.
+ *
+ * These areas w0 are corrected so that the resultant force and moment are those of the continuous traction, and of
+ * water pressures, which are linear, the second moments along the face, too:
+ *   w_i = w0_i + V_i q(z_i) sum_k b_k f_k(x_i),  sum_i w_i f_k(x_i) = integral of f_k over the face,
+ * with f = 1, the coordinates s, t along the face, s^2, s t, t^2 and the depth z. The face is a segment or a rectangle
+ * of the given area. It stands where the volume behind it, over the area, ends; its centre is that of these volumes. */
+#include "loading/load/face.h"
+
+#include "base/linear.h"
+#include <math.h>
+#include <stdlib.h>
+
+extern const LoadType water_pressure_load;
+
+enum { MOST_MOMENTS = 7 };
+
+typedef struct Scattered {
+  const Load *load;
+  const LoadMaking *making;
+  Face *face;
+  double spacing, horizon, thickness; /* thickness: 1 in space */
+  int along[2], tangents;             /* axes along the face */
+  double low[3], high[3];             /* of the particles behind the face that take forces, centres */
+  double plane;                       /* outwards coordinate of the face */
+  double centre[2], half[2];          /* of the face */
+  uint8_t *taking;                    /* [places] */
+  double *area[3];                    /* [places] */
+} Scattered;
+
+/** Coordinate of a place along the outward normal. */
+static double scattered_outwards(const Scattered *s, int64_t place)
+{
+  return s->face->outwards * s->making->body->particles.position[s->face->axis][place];
+}
+
+/* ---- the face ---- */
+
+/** True if all particles of a load come from one block with a file. */
+static bool scattered_is_cloud(const Load *load, const Body *body)
+{
+  const Particles *p = &body->particles;
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int block = p->block[load->selection.places[n] / SLICE];
+    if (!body->blocks[block]->file || block != p->block[load->selection.places[0] / SLICE]) return false;
+  }
+  return load->selection.count > 0;
+}
+
+/** Finds the extents of the particles of the block, or of the load alone. */
+static void scattered_extents(const Scattered *s, bool selected, double low[3], double high[3])
+{
+  const Particles *p = &s->making->body->particles;
+  const int block = p->block[s->load->selection.places[0] / SLICE];
+  const int64_t count = selected ? s->load->selection.count : p->count;
+  for (int k = 0; k < 3; ++k) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
+  for (int64_t n = 0; n < count; ++n) {
+    const int32_t place = selected ? s->load->selection.places[n] : p->place_of[n];
+    if (p->block[place / SLICE] != block) continue;
+    for (int k = 0; k < 3; ++k) {
+      low[k] = fmin(low[k], p->position[k][place]);
+      high[k] = fmax(high[k], p->position[k][place]);
+    }
+  }
+}
+
+/** Finds the axis and the direction of the face of selections that do not name one: the only axis at one end of which
+ *  all selected particles stand. @return false: there are several, or none */
+static bool scattered_find_normal(const Scattered *s, const double low[3], const double high[3])
+{
+  double block_low[3], block_high[3];
+  int found = 0;
+  scattered_extents(s, false, block_low, block_high);
+  for (int k = 0; k < s->making->body->dimensions; ++k) {
+    const bool at_low = low[k]<block_low[k] + 1.5 * s->spacing, at_high = high[k]> block_high[k] - 1.5 * s->spacing;
+    if (at_low == at_high) continue;
+    s->face->axis = k;
+    s->face->outwards = at_high ? 1 : -1;
+    ++found;
+  }
+  return found == 1;
+}
+
+/** Finds the extents along the face of the particles that take forces: those of the selection, up to sides of the block
+ *  that they reach. @return false: the area is not that of the face between them */
+static bool scattered_find_sides(Scattered *s, double area)
+{
+  double low[3], high[3], size = s->thickness;
+  scattered_extents(s, false, s->low, s->high);
+  scattered_extents(s, true, low, high);
+  for (int t = 0; t < s->tangents; ++t) {
+    const int k = s->along[t];
+    const bool to_low = low[k]<s->low[k] + 1.5 * s->spacing, to_high = high[k]> s->high[k] - 1.5 * s->spacing;
+    if (!to_low) s->low[k] = low[k];
+    if (!to_high) s->high[k] = high[k];
+    s->half[t] = (s->high[k] - s->low[k] + s->spacing) / 2;
+    size *= 2 * s->half[t];
+    s->low[k] = to_low ? -INFINITY : s->low[k] - s->spacing / 2;
+    s->high[k] = to_high ? INFINITY : s->high[k] + s->spacing / 2;
+  }
+  for (int t = 0; t < s->tangents; ++t) s->half[t] *= pow(area / size, 1.0 / s->tangents);
+  return area > 0.75 * size && area < 1.33 * size;
+}
+
+/** True if a place stands behind the face or its sides' ends, in its block. */
+static bool scattered_is_behind(const Scattered *s, int64_t place)
+{
+  const Particles *p = &s->making->body->particles;
+  if (p->number[place] < 0 || p->block[place / SLICE] != p->block[s->load->selection.places[0] / SLICE]) return false;
+  for (int t = 0; t < s->tangents; ++t) {
+    const double x = p->position[s->along[t]][place];
+    if (x < s->low[s->along[t]] || x > s->high[s->along[t]]) return false;
+  }
+  return true;
+}
+
+/** Finds the plane of the face, behind which the volume of a stretch is its length times the area, and the centre of the
+ *  volume there. The inner end of the stretch is the mean over a horizon, as particles are few. */
+static void scattered_find_plane(Scattered *s, double area)
+{
+  const Particles *p = &s->making->body->particles;
+  const double last = s->face->outwards > 0 ? s->high[s->face->axis] : -s->low[s->face->axis],
+               length = s->high[s->face->axis] - s->low[s->face->axis],
+               reach = fmin(2 * s->horizon, fmax(length / 2, s->spacing)), from = last - reach, to = from + reach / 2;
+  double volume = 0, moment[2] = {0};
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t place = p->place_of[n];
+    if (!scattered_is_behind(s, place)) continue;
+    const double share = fmax(0, fmin(1, (scattered_outwards(s, place) - from) / (to - from)));
+    volume += share * p->volume[place];
+    for (int t = 0; t < s->tangents; ++t) moment[t] += share * p->volume[place] * p->position[s->along[t]][place];
+  }
+  s->plane = (from + to) / 2 + volume / area;
+  if (!(s->plane >= last && s->plane <= last + 1.5 * s->spacing)) s->plane = last + s->spacing / 2;
+  for (int t = 0; t < s->tangents; ++t) s->centre[t] = moment[t] / volume;
+}
+
+/** Takes over what the deck says of the centre of the face. */
+static void scattered_take_centre(Scattered *s)
+{
+  const double *given = s->load->spec->centre;
+  for (int t = 0; t < s->tangents; ++t)
+    if (!isnan(given[s->along[t]])) s->centre[t] = given[s->along[t]];
+  if (!isnan(given[s->face->axis])) s->plane = s->face->outwards * given[s->face->axis];
+}
+
+/* ---- areas ---- */
+
+static double scattered_depth(const Scattered *s, int64_t place)
+{
+  return fmax(0, s->plane - scattered_outwards(s, place));
+}
+
+/** Volume times the share of the bonds that reach through the face. */
+static double scattered_profile(const Scattered *s, int64_t place)
+{
+  const double z = scattered_depth(s, place) / s->horizon;
+  return z < 1 ? s->making->body->particles.volume[place] * pow(1 - z * z, 0.5 * (s->tangents + 2)) : 0;
+}
+
+/** Scales the areas told to the area of the face. @return false: they are none, or far from the area */
+static bool scattered_scale(const Scattered *s, double area)
+{
+  const int64_t places = s->making->body->particles.places;
+  double *own = s->area[s->face->axis], sum = 0;
+  for (int64_t place = 0; place < places; ++place)
+    if (s->taking[place]) sum -= s->face->outwards * own[place];
+  if (!(sum > 0.5 * area && sum < 2 * area)) return false;
+  for (int64_t place = 0; place < places; ++place) own[place] *= area / sum;
+  return true;
+}
+
+/** Asks the formulation, by its even stress or by the forces of an even pull. @return false: neither tells */
+static bool scattered_ask(const Scattered *s, double area)
+{
+  const EvenStress *even = &s->making->even_stress;
+  const Particles *p = &s->making->body->particles;
+  even->find(even->domain, s->taking, s->area);
+  if (scattered_scale(s, area)) return true;
+  if (!even->pull(even->model, s->face->axis, s->area[s->face->axis])) return false;
+  for (int64_t place = 0; place < p->places; ++place) s->area[s->face->axis][place] *= p->volume[place];
+  return scattered_scale(s, area);
+}
+
+/** Finds first estimates of areas, in area[0]. @return how many particles have one */
+static int64_t scattered_estimate(Scattered *s, double area)
+{
+  const Particles *p = &s->making->body->particles;
+  const double length = s->high[s->face->axis] - s->low[s->face->axis];
+  int64_t count = 0;
+  for (int64_t place = 0; place < p->places; ++place)
+    s->taking[place] = scattered_is_behind(s, place) && scattered_depth(s, place) < 2 * s->horizon;
+  const bool told = length > 4 * s->horizon && scattered_ask(s, area);
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (!told) s->taking[place] &= scattered_depth(s, place) < s->horizon;
+    const double own = -s->face->outwards * s->area[s->face->axis][place];
+    s->area[0][place] = !s->taking[place] ? 0 : told ? own : scattered_profile(s, place);
+    count += s->taking[place];
+  }
+  return count;
+}
+
+/* ---- moments ---- */
+
+/** Functions of which the sums are those over the face, in half sizes of the face and horizons of depth. */
+static int scattered_functions(const Scattered *s, int64_t place, double f[MOST_MOMENTS])
+{
+  const Particles *p = &s->making->body->particles;
+  double x[2] = {0};
+  int count = 0;
+  for (int t = 0; t < s->tangents; ++t) x[t] = (p->position[s->along[t]][place] - s->centre[t]) / s->half[t];
+  f[count++] = 1;
+  for (int t = 0; t < s->tangents; ++t) f[count++] = x[t];
+  f[count++] = scattered_depth(s, place) / s->horizon;
+  for (int t = 0; t < s->tangents; ++t)
+    for (int r = t; r < s->tangents; ++r) f[count++] = x[t] * x[r];
+  return count;
+}
+
+/** Integrals of the functions over the face: of a segment or a rectangle. */
+static void scattered_integrals(const Scattered *s, double area, double wanted[MOST_MOMENTS])
+{
+  const int first = 2 + s->tangents;
+  for (int k = 0; k < MOST_MOMENTS; ++k) wanted[k] = 0;
+  wanted[0] = area;
+  wanted[first] = area / 3;
+  if (s->tangents == 2) wanted[first + 2] = area / 3;
+}
+
+/** Corrects areas so that the sums of the first functions are right. @return false: particles are too few for that */
+static bool scattered_correct(const Scattered *s, int functions, const double wanted[MOST_MOMENTS])
+{
+  const Particles *p = &s->making->body->particles;
+  double matrix[MOST_MOMENTS * MOST_MOMENTS] = {0}, x[MOST_MOMENTS], f[MOST_MOMENTS], largest = 0;
+  int begin[MOST_MOMENTS];
+  for (int k = 0; k < functions; ++k) x[k] = wanted[k];
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (!s->taking[place]) continue;
+    const double weight = scattered_profile(s, place);
+    scattered_functions(s, place, f);
+    for (int k = 0; k < functions; ++k) {
+      x[k] -= s->area[0][place] * f[k];
+      for (int l = 0; l <= k; ++l) matrix[k * functions + l] += weight * f[k] * f[l];
+    }
+  }
+  for (int k = 0; k < functions; ++k) largest = fmax(largest, matrix[k * functions + k]);
+  if (!linear_factor(functions, matrix, begin)) return false;
+  for (int k = 0; k < functions; ++k) /* squares of pivots */
+    if (matrix[k * functions + k] * matrix[k * functions + k] < 1e-6 * largest) return false;
+  linear_factor_solve(functions, matrix, begin, x);
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (!s->taking[place]) continue;
+    const double weight = scattered_profile(s, place);
+    scattered_functions(s, place, f);
+    for (int k = 0; k < functions; ++k) s->area[0][place] += weight * x[k] * f[k];
+  }
+  return true;
+}
+
+/** Corrects as many moments as the particles allow; the force in all ever. */
+static void scattered_balance(const Scattered *s, double area)
+{
+  const bool linear = s->load->type == &water_pressure_load;
+  const int all = !linear ? 2 + s->tangents : s->tangents == 2 ? 7 : 4;
+  const int tries[] = {all, 2 + s->tangents, 1 + s->tangents, 1};
+  double wanted[MOST_MOMENTS];
+  scattered_integrals(s, area, wanted);
+  for (int k = 0; k < 4; ++k) {
+    if (!scattered_correct(s, tries[k], wanted)) continue;
+    scattered_correct(s, tries[k], wanted); /* roundings */
+    return;
+  }
+}
+
+/* ---- making ---- */
+
+/** Writes the areas to the face, and lists particles beside those of the load. */
+static int scattered_store(const Scattered *s, Load *load, int64_t count, Error *error)
+{
+  const Particles *p = &s->making->body->particles;
+  Face *face = s->face;
+  face->scattered = true;
+  face->plane = face->outwards * s->plane;
+  face->place = memory_zeroed((size_t)count, sizeof *face->place, "face", error);
+  face->at = memory_zeroed((size_t)count, sizeof *face->at, "face", error);
+  face->per_volume = memory_zeroed((size_t)count, sizeof *face->per_volume, "face", error);
+  load->other.places = memory_zeroed((size_t)count, sizeof *load->other.places, "face", error);
+  if (!face->place || !face->at || !face->per_volume || !load->other.places) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t place = p->place_of[n];
+    if (!s->taking[place]) continue;
+    face->place[face->count] = load->other.places[face->count] = place;
+    face->at[face->count] = (int32_t)face->count;
+    face->per_volume[face->count++] = s->area[0][place] / p->volume[place];
+  }
+  for (int64_t n = 0; n < load->selection.count; ++n) s->taking[load->selection.places[n]] = 0;
+  for (int64_t n = 0; n < face->count; ++n)
+    if (s->taking[face->place[n]]) load->other.places[load->other.count++] = face->place[n];
+  return BRECCIA_OK;
+}
+
+static void scattered_find_tangents(Scattered *s)
+{
+  s->tangents = 0;
+  for (int k = 0; k < s->making->body->dimensions; ++k)
+    if (k != s->face->axis) s->along[s->tangents++] = k;
+}
+
+int face_spread_scattered(Face *face, Load *load, const LoadMaking *making, bool *done)
+{
+  const Body *body = making->body;
+  const double area = load->spec->area;
+  const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
+  double low[3], high[3];
+  *done = false;
+  if (isnan(area) || body->dimensions < 2 || body->margin_of || !making->family->first ||
+      !scattered_is_cloud(load, body))
+    return BRECCIA_OK;
+  const int block = body->particles.block[load->selection.places[0] / SLICE];
+  Scattered s = {.load = load,
+                 .making = making,
+                 .face = face,
+                 .spacing = body->lattices[block].spacing,
+                 .horizon = making->family->horizon,
+                 .thickness = body->dimensions == 2 ? body_section(body) : 1};
+  scattered_extents(&s, true, low, high);
+  if (!(on && on->face) && !scattered_find_normal(&s, low, high)) return BRECCIA_OK;
+  scattered_find_tangents(&s);
+  if (!scattered_find_sides(&s, area)) return BRECCIA_OK;
+  scattered_find_plane(&s, area);
+  scattered_take_centre(&s);
+  const size_t places = (size_t)body->particles.places;
+  Error *error = making->reader->error;
+  s.taking = memory_zeroed(places, 1, "face", error);
+  for (int k = 0; k < 3; ++k) s.area[k] = memory_zeroed(places, sizeof(double), "face", error);
+  int status = s.taking && s.area[0] && s.area[1] && s.area[2] ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (!status) {
+    const int64_t count = scattered_estimate(&s, area);
+    *done = count > 0;
+    if (*done) {
+      scattered_balance(&s, area);
+      status = scattered_store(&s, load, count, error);
+    }
+  }
+  free(s.taking);
+  for (int k = 0; k < 3; ++k) free(s.area[k]);
+  return status;
+}
