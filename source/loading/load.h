@@ -160,8 +160,8 @@ typedef struct EvenStress {
   const void *domain;
   /** Finds the force per volume that all particles bring along an axis in an even uniaxial stress of 1 along the axis.
    *  @param[out] force  [places]
-   *  @return false: bodies of this formulation do not tell, or there is no memory */
-  bool (*pull)(void *model, int axis, double *force);
+   *  @return BRECCIA_OK, or BRECCIA_FAILURE where there is no memory */
+  int (*pull)(void *model, int axis, double *force, Error *error);
   void *model;
 } EvenStress;
 

@@ -172,15 +172,15 @@ static void set_even_pull(const breccia_model *model, int axis, double size, dou
 }
 
 /** Implements EvenStress.pull by an evaluation of forces; forces beside bonds are left out. */
-static bool even_pull(void *context, int axis, double *force)
+static int even_pull(void *context, int axis, double *force, Error *error)
 {
   const double size = 1e-7;
   breccia_model *model = context;
   Domain *d = &model->domain;
   Aside aside;
   double *beside[3] = {0};
-  bool done = aside_create(&aside, d, "faces", NULL) == BRECCIA_OK;
-  for (int k = 0; k < 3; ++k) done &= (beside[k] = places_array(d->particles->places, "faces", NULL)) != NULL;
+  bool done = aside_create(&aside, d, "faces", error) == BRECCIA_OK;
+  for (int k = 0; k < 3; ++k) done &= (beside[k] = places_array(d->particles->places, "faces", error)) != NULL;
   if (done) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
@@ -199,7 +199,7 @@ static bool even_pull(void *context, int axis, double *force)
   }
   for (int k = 0; k < 3; ++k) places_free(&beside[k]);
   aside_destroy(&aside);
-  return done;
+  return done ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static int create_loading(breccia_model *model, Error *error)

@@ -288,7 +288,7 @@ static bool loads_are_one(const Load *a, const Load *b)
   if (a->type != b->type || a->first >= b->behind || b->first >= a->behind || a->selection.count != b->selection.count)
     return false;
   if (memcmp(a->selection.places, b->selection.places, sizeof(int32_t) * (size_t)a->selection.count) != 0) return false;
-  static const char *const keys[] = {"history", "area", "spread"};
+  static const char *const keys[] = {"history", "area", "centre", "spread"};
   for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k)
     if (!loads_same_node(node_get(one, keys[k]), node_get(other, keys[k]))) return false;
   return a->node && b->node && !strcmp(a->node->key, b->node->key) && loads_same_node(a->node, b->node);

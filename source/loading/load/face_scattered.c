@@ -145,13 +145,26 @@ static void scattered_find_plane(Scattered *s, double area)
   for (int t = 0; t < s->tangents; ++t) s->centre[t] = moment[t] / volume;
 }
 
-/** Takes over what the deck says of the centre of the face. */
-static void scattered_take_centre(Scattered *s)
+/** Takes over what the deck says of the centre of the face; refuses a centre that is none of the particles' face. */
+static int scattered_take_centre(Scattered *s)
 {
-  const double *given = s->load->spec->centre;
-  for (int t = 0; t < s->tangents; ++t)
+  const double *given = s->load->spec->centre, near = 2 * s->spacing;
+  const DeckReader *reader = s->making->reader;
+  double found[3] = {NAN, NAN, NAN}, room[3];
+  for (int t = 0; t < s->tangents; ++t) {
+    found[s->along[t]] = s->centre[t];
+    room[s->along[t]] = fmax(near, s->half[t] / 4);
     if (!isnan(given[s->along[t]])) s->centre[t] = given[s->along[t]];
+  }
+  found[s->face->axis] = s->face->outwards * s->plane;
+  room[s->face->axis] = near;
   if (!isnan(given[s->face->axis])) s->plane = s->face->outwards * given[s->face->axis];
+  for (int k = 0; k < s->making->body->dimensions; ++k)
+    if (fabs(given[k] - found[k]) > room[k])
+      return node_error(reader->document, section_node(s->load->spec, "centre"), reader->error,
+                        "centre: its %c is %g, but the face of the selected particles has its centre near %g", "xyz"[k],
+                        given[k], found[k]);
+  return BRECCIA_OK;
 }
 
 /* ---- areas ---- */
@@ -180,34 +193,40 @@ static bool scattered_scale(const Scattered *s, double area)
   return true;
 }
 
-/** Asks the formulation, by its even stress or by the forces of an even pull. @return false: neither tells */
-static bool scattered_ask(const Scattered *s, double area)
+/** Asks the formulation, by its even stress or by the forces of an even pull.
+ *  @param[out] told  false: neither tells */
+static int scattered_ask(const Scattered *s, double area, bool *told)
 {
   const EvenStress *even = &s->making->even_stress;
   const Particles *p = &s->making->body->particles;
+  double *own = s->area[s->face->axis];
   even->find(even->domain, s->taking, s->area);
-  if (scattered_scale(s, area)) return true;
-  if (!even->pull(even->model, s->face->axis, s->area[s->face->axis])) return false;
-  for (int64_t place = 0; place < p->places; ++place) s->area[s->face->axis][place] *= p->volume[place];
-  return scattered_scale(s, area);
+  *told = scattered_scale(s, area);
+  if (*told) return BRECCIA_OK;
+  const int status = even->pull(even->model, s->face->axis, own, s->making->reader->error);
+  for (int64_t place = 0; place < p->places; ++place) own[place] *= p->volume[place];
+  *told = !status && scattered_scale(s, area);
+  return status;
 }
 
-/** Finds first estimates of areas, in area[0]. @return how many particles have one */
-static int64_t scattered_estimate(Scattered *s, double area)
+/** Finds first estimates of areas, in area[0].
+ *  @param[out] count  how many particles have one */
+static int scattered_estimate(Scattered *s, double area, int64_t *count)
 {
   const Particles *p = &s->making->body->particles;
   const double length = s->high[s->face->axis] - s->low[s->face->axis];
-  int64_t count = 0;
+  bool told = false;
   for (int64_t place = 0; place < p->places; ++place)
     s->taking[place] = scattered_is_behind(s, place) && scattered_depth(s, place) < 2 * s->horizon;
-  const bool told = length > 4 * s->horizon && scattered_ask(s, area);
+  if (length > 4 * s->horizon && scattered_ask(s, area, &told)) return BRECCIA_FAILURE;
+  *count = 0;
   for (int64_t place = 0; place < p->places; ++place) {
     if (!told) s->taking[place] &= scattered_depth(s, place) < s->horizon;
     const double own = -s->face->outwards * s->area[s->face->axis][place];
     s->area[0][place] = !s->taking[place] ? 0 : told ? own : scattered_profile(s, place);
-    count += s->taking[place];
+    *count += s->taking[place];
   }
-  return count;
+  return BRECCIA_OK;
 }
 
 /* ---- moments ---- */
@@ -338,15 +357,16 @@ int face_spread_scattered(Face *face, Load *load, const LoadMaking *making, bool
   scattered_find_tangents(&s);
   if (!scattered_find_sides(&s, area)) return BRECCIA_OK;
   scattered_find_plane(&s, area);
-  scattered_take_centre(&s);
+  if (scattered_take_centre(&s)) return BRECCIA_USER_ERROR;
   const size_t places = (size_t)body->particles.places;
   Error *error = making->reader->error;
   s.taking = memory_zeroed(places, 1, "face", error);
   for (int k = 0; k < 3; ++k) s.area[k] = memory_zeroed(places, sizeof(double), "face", error);
   int status = s.taking && s.area[0] && s.area[1] && s.area[2] ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status) {
-    const int64_t count = scattered_estimate(&s, area);
-    *done = count > 0;
+    int64_t count = 0;
+    status = scattered_estimate(&s, area, &count);
+    *done = !status && count > 0;
     if (*done) {
       scattered_balance(&s, area);
       status = scattered_store(&s, load, count, error);

@@ -197,8 +197,8 @@ int face_spread(Face *face, Load *load, const LoadMaking *making)
   const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
   const bool can = on && on->face && on->layers == 1 && isnan(load->spec->area) && making->family->first;
   bool done = false;
-  if (!told && face_spread_scattered(face, load, making, &done)) return BRECCIA_FAILURE;
-  if (done) return BRECCIA_OK;
+  const int failed = told ? BRECCIA_OK : face_spread_scattered(face, load, making, &done);
+  if (failed || done) return failed;
   if (told ? told[0] == 'l' : !can) return spread_over_layers(face, load, making);
   const int status = can ? spread_by_bonds(face, load, making, &done) : BRECCIA_OK;
   if (status || done || !told) return status;

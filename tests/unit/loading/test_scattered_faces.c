@@ -186,10 +186,34 @@ static void water_presses_scattered_walls_with_its_moment(void **state)
   }
 }
 
+/** A centre that is none of the face would turn the body: it is refused. */
+static void a_centre_elsewhere_is_refused(void **state)
+{
+  (void)state;
+  const int cells[3] = {20, 14, 1};
+  static const char *const centres[] = {"[10, 3]", "[2, 14]"}, *const words[] = {"centre: its y is 3, but the face",
+                                                                                 "centre: its x is 2, but the face"};
+  for (int k = 0; k < 2; ++k) {
+    char deck[600];
+    snprintf(deck, sizeof deck,
+             UNITS "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+                   "peridynamics: {space: plane stress}\nbody: {b: {material: m, lattice: square, thickness: 0.3, "
+                   "spacing: 1, file: " FILE_NAME "}}\n"
+                   "loads: [{on: {face: y+}, traction: [0, 1], area: 6, centre: %s}]\nsolve: {explicit: {steps: 1}}\n",
+             centres[k]);
+    write_box(cells, 0.3);
+    char *refusal = refusal_of(deck);
+    unlink(FILE_NAME);
+    assert_non_null(strstr(refusal, words[k]));
+    free(refusal);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(an_even_stress_reaches_scattered_faces),
                                      cmocka_unit_test(force_and_moment_are_those_of_the_face),
-                                     cmocka_unit_test(water_presses_scattered_walls_with_its_moment)};
+                                     cmocka_unit_test(water_presses_scattered_walls_with_its_moment),
+                                     cmocka_unit_test(a_centre_elsewhere_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
