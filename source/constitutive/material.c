@@ -177,12 +177,27 @@ static int material_examine(const Material *m, char *reason, size_t size)
   return answers ? BRECCIA_OK : BRECCIA_USER_ERROR;
 }
 
+/** Returns the index of a parameter of a law, or -1. */
+static int material_parameter(const breccia_law *law, const char *name)
+{
+  for (int k = 0; k < law->parameter_count; ++k)
+    if (!strcmp(law->parameters[k].name, name)) return k;
+  return -1;
+}
+
+/** Returns true if a law softens along bonds by a tensile strength and a fracture energy. */
+static bool material_softens_along_bonds(const breccia_law *law)
+{
+  return law->components == 1 && law->softening_energy && material_parameter(law, "tensile strength") >= 0 &&
+         material_parameter(law, "fracture energy") >= 0;
+}
+
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size)
 {
   *material = (Material){
       .name = law->name, .law = law, .law_name = law->name, .constants = memory_plain(1, law->constants_size + 1)};
   material->fracture_energy = material->length = NAN;
-  material->reduction = 1;
+  material->reduction = material->strength_share = 1;
   if (!material->constants) {
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
@@ -200,7 +215,7 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   if (law->softening_energy) material->softening_energy = law->softening_energy(material->constants);
   material->history_values = law->history_values ? law->history_values(material->constants) : 0;
   int status = material_examine(material, reason, size);
-  if (!status && law->reduce_strength && !law->release) {
+  if (!status && (law->reduce_strength || material_softens_along_bonds(law)) && !law->release) {
     material->values = memory_plain((size_t)law->parameter_count + 1, sizeof(double));
     if (material->values)
       memcpy(material->values, values, sizeof(double) * (size_t)law->parameter_count);
@@ -212,39 +227,62 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   return status;
 }
 
+/** Prepares the law of a material with other parameter values, in its own constants, to which points hold on.
+ *  @param[in] values  [parameters]; NULL: memory is out
+ *  @return BRECCIA_OK, or the status with the constants as they were */
+static int material_prepare_again(Material *material, const double *values, char *reason, size_t size)
+{
+  const breccia_law *law = material->law;
+  void *constants = memory_plain(1, law->constants_size + 1);
+  int status = values && constants ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (status) snprintf(reason, size, "out of memory");
+  if (!status && law->prepare(values, constants, reason, size)) status = BRECCIA_USER_ERROR;
+  if (!status) memcpy(material->constants, constants, law->constants_size);
+  free(constants);
+  return status;
+}
+
+/** Returns a copy of the parameter values as given; NULL when memory is out. */
+static double *material_values(const Material *material)
+{
+  const size_t parameters = (size_t)material->law->parameter_count;
+  double *values = memory_plain(parameters + 1, sizeof *values);
+  if (values) memcpy(values, material->values, sizeof *values * parameters);
+  return values;
+}
+
 bool material_can_reduce(const Material *material)
 {
-  return material->values != NULL;
+  return material->values && material->law->reduce_strength;
 }
 
 int material_reduce(Material *material, double factor, char *reason, size_t size)
 {
-  const breccia_law *law = material->law;
-  const size_t parameters = (size_t)law->parameter_count;
-  double *values = memory_plain(parameters + 1, sizeof *values);
-  void *constants = memory_plain(1, law->constants_size + 1);
-  int status = values && constants ? BRECCIA_OK : BRECCIA_FAILURE;
-  if (status) snprintf(reason, size, "out of memory");
-  if (!status) {
-    memcpy(values, material->values, sizeof *values * parameters);
-    law->reduce_strength(values, factor);
-    if (law->prepare(values, constants, reason, size)) status = BRECCIA_USER_ERROR;
-  }
-  if (!status) { /* points hold on to the constants */
-    memcpy(material->constants, constants, law->constants_size);
-    material->reduction = factor;
-  }
-  free(constants);
+  double *values = material_values(material);
+  if (values) material->law->reduce_strength(values, factor);
+  const int status = material_prepare_again(material, values, reason, size);
+  if (!status) material->reduction = factor;
   free(values);
   return status;
 }
 
-/** Returns the index of a parameter of a law, or -1. */
-static int material_parameter(const breccia_law *law, const char *name)
+bool material_can_share(const Material *material)
 {
-  for (int k = 0; k < law->parameter_count; ++k)
-    if (!strcmp(law->parameters[k].name, name)) return k;
-  return -1;
+  const Material *within = material_within_limits(material), *base = within ? within : material;
+  return base->values && material_softens_along_bonds(base->law);
+}
+
+int material_share_strength(Material *material, double share, char *reason, size_t size)
+{
+  Material *within = material_within_limits(material), *base = within ? within : material;
+  double *values = material_values(base);
+  if (values) values[material_parameter(base->law, "tensile strength")] *= share;
+  const int status = material_prepare_again(base, values, reason, size);
+  free(values);
+  if (status) return status;
+  material->strength_share = base->strength_share = share;
+  material->softening_energy = base->softening_energy = base->law->softening_energy(base->constants);
+  return BRECCIA_OK;
 }
 
 double material_failure_strain(const Material *material)

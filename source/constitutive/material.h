@@ -31,9 +31,10 @@ typedef struct Material {
   double length;           /* over which the law spreads G_F; NaN: none */
   bool length_given;       /* by the deck, in place of that of the formulation */
   int history_values;
-  double *values;   /* [parameters] as given; owned; NULL unless the law can reduce its strengths */
-  double reduction; /* factor by which strengths are divided */
-  Remote *remote;   /* owned; NULL: the law is in this program */
+  double *values;        /* [parameters] as given; owned; NULL unless strengths of the law can be changed */
+  double reduction;      /* factor by which strengths are divided */
+  double strength_share; /* factor on the tensile strength of a law that softens along bonds */
+  Remote *remote;        /* owned; NULL: the law is in this program */
 } Material;
 
 /** Prepares a material from its section (reader->context is the LawList).
@@ -64,6 +65,14 @@ bool material_can_reduce(const Material *material);
  *  @param[out] reason  why the law refuses them @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strengths as they
  * were */
 int material_reduce(Material *material, double factor, char *reason, size_t size);
+
+/** Returns true if the law softens along bonds, and the tensile strength of bonds can be set apart from that of the deck. */
+bool material_can_share(const Material *material);
+/** Prepares the law with a share of the tensile strength that the deck gives, in place of the present share. The
+ *  fracture energy stays. By one thread, before points are updated.
+ *  @param[out] reason  why the law refuses the strength
+ *  @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strength as it was */
+int material_share_strength(Material *material, double share, char *reason, size_t size);
 
 /** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.
  *  @return -1, or a point of the batch that could not be integrated */

@@ -160,10 +160,16 @@ int material_limit(Material *material, double smallest, double largest, char *re
     return uniaxial ? BRECCIA_FAILURE : BRECCIA_USER_ERROR;
   }
   c->base = *material;
+  material->values = NULL; /* which the base owns */
   c->smallest = isnan(smallest) ? -INFINITY : smallest;
   c->largest = isnan(largest) ? INFINITY : largest;
   material->law = &law_min_max;
   material->constants = c;
   material->history_values = law_min_max.history_values(c);
   return BRECCIA_OK;
+}
+
+Material *material_within_limits(const Material *material)
+{
+  return material->law == &law_min_max ? &((MinMax *)material->constants)->base : NULL;
 }

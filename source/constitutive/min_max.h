@@ -6,6 +6,9 @@
 
 extern const breccia_law law_min_max;
 
+/** Returns the material around whose law the limits of strain are put, or NULL where strains have none. */
+Material *material_within_limits(const Material *material);
+
 /** Whether a point has failed by the limits of its strain. */
 bool material_is_beyond_limits(const Material *material, const double *history);
 

@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/team.h"
+#include "domain/tensile_strength.h"
 #include "loading/support.h"
 #include <math.h>
 #include <stdlib.h>
@@ -390,6 +391,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   }
   fill_rotary(d);
   if (domain_find_lengths(d, error)) return BRECCIA_FAILURE;
+  if ((status = tensile_strength_set(d, reader, spec->materials))) return status;
   status = create_failure(d, reader, spec->failure, &of);
   for (int r = 0; r < d->region_count && !status; ++r) status = window_create(d, &d->regions[r], error);
   return status ? status : create_forces(d, reader, spec, space);

@@ -1,6 +1,6 @@
 /* Toughness by direction: what plane cracks take of the lattice of a block, over the fracture energy that the deck asks
- * for (failure/crack_planes.h, docs/theory.md 4). Where bonds break at once running cracks take more than planes cut, and loads
- * feel more than what bonds take: failure/crack_wake.c has what was measured. */
+ * for (failure/crack_planes.h, docs/theory.md 4). Where bonds break at once running cracks take more than planes cut,
+ * and loads feel more than what bonds take: failure/crack_wake.c has what was measured. */
 #include "domain/toughness.h"
 
 #include "constitutive/normal_lengths.h"
@@ -131,47 +131,26 @@ static void toughness_add_links(const Domain *d, const ToughnessBlock *t, Text *
            d->body.blocks[t->block.block]->head.name, most / least);
 }
 
-/** Finds the band of a strength along the axes and diagonals of the lattice of a block.
- *  @return false if none is known */
-static bool toughness_strength_band(const Region *region, int block, int dimensions,
-                                    double (*strength)(const void *formulation, int block, const double direction[3]),
-                                    double *least, double *most)
-{
-  double n[3];
-  *least = INFINITY;
-  *most = 0;
-  if (!strength || dimensions < 2) return false;
-  for (int k = 0; k < TOUGHNESS_DIRECTIONS; ++k) {
-    if (!toughness_direction(k, dimensions, n)) continue;
-    const double found = strength(region->formulation, block, n);
-    if (isnan(found)) return false;
-    *least = fmin(*least, found);
-    *most = fmax(*most, found);
-  }
-  return true;
-}
-
-/** Adds what a lattice of softening bonds carries in uniaxial tension, and which strength to give for the one wanted:
- * the largest counts, as too much strength is unsafe. And what it carries in uniaxial compression. */
-static void toughness_add_strength(const Domain *d, const Region *region, int block, const Material *m,
+/** Adds what a lattice of bonds that crush carries if pressed along its axes and diagonals. */
+static void toughness_add_crushing(const Domain *d, const Region *region, int block, const Material *m,
                                    const Units *units, Text *text)
 {
   const int dimensions = d->body.dimensions;
-  double least, most;
-  if (toughness_strength_band(region, block, dimensions, region->type->uniaxial_crushing, &least, &most)) {
-    text_add(text,
-             "%s: pressed one way a body carries %.3g to %.3g of its compressive strength by the direction; its "
-             "crushing energy is spread over ",
-             d->body.blocks[block]->head.name, least, most);
-    quantity_describe(units_in_si(units, dimension_find("length"), m->length), "m", text);
-    text_add(text, "\n");
+  double least = INFINITY, most = 0, n[3];
+  if (!region->type->uniaxial_crushing || dimensions < 2) return;
+  for (int k = 0; k < TOUGHNESS_DIRECTIONS; ++k) {
+    if (!toughness_direction(k, dimensions, n)) continue;
+    const double found = region->type->uniaxial_crushing(region->formulation, block, n);
+    if (isnan(found)) return;
+    least = fmin(least, found);
+    most = fmax(most, found);
   }
-  if (!toughness_strength_band(region, block, dimensions, region->type->uniaxial_strength, &least, &most)) return;
-  text_add(
-      text,
-      "%s: pulled one way a body carries %.3g to %.3g of the tensile strength of its bonds by the direction; for a "
-      "body of some strength give the bonds at most %.3g of it\n",
-      d->body.blocks[block]->head.name, least, most, 1 / most);
+  text_add(text,
+           "%s: pressed one way a body carries %.3g to %.3g of its compressive strength by the direction; its "
+           "crushing energy is spread over ",
+           d->body.blocks[block]->head.name, least, most);
+  quantity_describe(units_in_si(units, dimension_find("length"), m->length), "m", text);
+  text_add(text, "\n");
 }
 
 void toughness_describe(const Domain *d, const FailureSpec *failure, const Units *units, Text *text)
@@ -202,6 +181,6 @@ void toughness_describe(const Domain *d, const FailureSpec *failure, const Units
       continue;
     }
     toughness_add(d, &t, !t.criterion || !isnan(energy), units, text);
-    toughness_add_strength(d, region, block, m, units, text);
+    toughness_add_crushing(d, region, block, m, units, text);
   }
 }

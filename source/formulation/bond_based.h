@@ -43,6 +43,7 @@ struct BondBased {
   const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   const Influence *influence;
+  bool strength_of_body; /* tensile strengths that decks give are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */
   double *per_stress;      /* [blocks] c / E */

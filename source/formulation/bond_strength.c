@@ -1,41 +1,56 @@
-/* Strength of a lattice of softening bonds: what an infinite body carries at most that is pulled along one direction
- * and free across it, over what one bond carries at most; and what it carries at most if pressed, over the compressive
- * strength of its law. Slanted bonds still gain when those along the pull have
- * begun to soften, so that the body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
+/* Strength of a body of softening bonds: what an infinite body carries at most that is pulled along one direction and
+ * free across it, over what one bond carries at most; and what it carries at most if pressed, over the compressive
+ * strength of its law. Slanted bonds still gain when those along the pull have begun to
+ * soften, so that the body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
  *   sigma = 1/2 sum (c / E) w L sigma_b(n . e n) n n
- * over the bonds of a particle, with the stress sigma_b of the law. */
+ * over the bonds of a particle, with the stress sigma_b of the law. Of particles from a file the sum is the mean over
+ * families inside. */
+#include "base/linear.h"
 #include "base/memory.h"
+#include "base/tensor.h"
 #include "constitutive/min_max.h"
 #include "formulation/bond_based.h"
+#include "formulation/whole_family.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 200 };
+/* STRENGTH_TURNS are iterations by tangents; by the elastic stiffness there may be more. Of particles from a file so
+ * many families count. */
+enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 40, STRENGTH_ELASTIC_TURNS = 400, STRENGTH_FAMILIES = 8, PARTS = 6 };
 
 /* Increments of the pull, as a share of the strain at which the law begins to soften; the pull ends where the stress
  * has fallen to this share of the peak. Stresses across the pull vanish to this share of the peak. */
-static const double strength_increment = 0.02, strength_fallen = 0.9, strength_side_tolerance = 1e-6;
+static const double strength_increment = 0.02, strength_fallen = 0.9, strength_side_tolerance = 1e-9;
 
 /* Increments of the pressure, as a share of strength over Young's modulus. Stresses across vanish to this share of the
  * strength. */
 static const double crushing_increment = 0.05, crushing_side_tolerance = 1e-4;
 
-/** Bonds of a particle of an infinite lattice. Rows are the pull and the two directions across it. */
+/** Bonds of a particle of an infinite body. Parts of strain and stress: along the pull, across it, and the shear
+ *  between both; in space along the second direction across, and the other two shears. */
 typedef struct StrengthBonds {
   const Material *material;
   Space space;
-  int count;
-  double *share[3], *weight; /* [count] squares of the parts of n along the rows; (c / E) w L / 2 */
-  double *strain, *stress, *length, *lateral, *committed, *trial;
+  int count, parts;
+  double *share[PARTS], *weight; /* [count] bond strain of a unit part; (c / E) w L / 2 */
+  double *direction[3];          /* [count] of the bond, along the pull and across it */
+  double *strain, *stress, *tangent, *length, *lateral, *committed, *trial;
 } StrengthBonds;
+
+/** A strain and its stress, by parts. */
+typedef struct StrengthState {
+  double strain[PARTS], stress[PARTS];
+} StrengthState;
 
 static void strength_free(StrengthBonds *s)
 {
-  for (int k = 0; k < 3; ++k) free(s->share[k]);
+  for (int k = 0; k < PARTS; ++k) free(s->share[k]);
+  for (int k = 0; k < 3; ++k) free(s->direction[k]);
   free(s->weight);
   free(s->strain);
   free(s->stress);
+  free(s->tangent);
   free(s->length);
   free(s->lateral);
   free(s->committed);
@@ -45,11 +60,13 @@ static void strength_free(StrengthBonds *s)
 static bool strength_reserve(StrengthBonds *s)
 {
   const size_t count = (size_t)s->count, values = count * (size_t)s->material->history_values + 1;
-  double **const rows[] = {&s->share[0], &s->share[1], &s->share[2], &s->weight,
-                           &s->strain,   &s->stress,   &s->length,   &s->lateral};
+  double **const rows[] = {&s->weight,  &s->strain,       &s->stress,       &s->tangent,     &s->length,
+                           &s->lateral, &s->direction[0], &s->direction[1], &s->direction[2]};
   bool made = true;
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
-    made &= (*rows[k] = memory_zeroed(count, sizeof(double), "strength of bonds", NULL)) != NULL;
+    made &= (*rows[k] = memory_zeroed(count + 1, sizeof(double), "strength of bonds", NULL)) != NULL;
+  for (int k = 0; k < s->parts; ++k)
+    made &= (s->share[k] = memory_zeroed(count + 1, sizeof(double), "strength of bonds", NULL)) != NULL;
   made &= (s->committed = memory_zeroed(values, sizeof(double), "strength of bonds", NULL)) != NULL;
   made &= (s->trial = memory_zeroed(values, sizeof(double), "strength of bonds", NULL)) != NULL;
   return made;
@@ -71,50 +88,110 @@ static void strength_turn(const double n[3], double across[2][3])
     across[1][k] = n[(k + 1) % 3] * across[0][(k + 2) % 3] - n[(k + 2) % 3] * across[0][(k + 1) % 3];
 }
 
-static bool strength_begin(StrengthBonds *s, const BondBased *b, int block, const double n[3])
+/** Sets the shares and the weight of bond k. @param[in] rows  directions of the pull and across it */
+static void strength_take(StrengthBonds *s, int k, const double xi[3], double length, double weight,
+                          const double *const rows[3])
 {
-  const int first = b->family->pattern_begin[block];
-  double across[2][3];
-  s->count = b->family->pattern_begin[block + 1] - first;
-  if (!strength_reserve(s)) return false;
-  strength_turn(n, across);
-  for (int k = 0; k < s->count; ++k) {
-    const Pattern *p = &b->family->patterns[first + k];
-    const double *const rows[3] = {n, across[0], across[1]};
-    for (int r = 0; r < 3; ++r)
-      s->share[r][k] = pow((p->xi[0] * rows[r][0] + p->xi[1] * rows[r][1] + p->xi[2] * rows[r][2]) / p->length, 2);
-    s->weight[k] = b->per_stress[block] * p->weight * p->length / 2;
-    s->length[k] = s->material->length;
+  double part[3];
+  for (int r = 0; r < 3; ++r) part[r] = (xi[0] * rows[r][0] + xi[1] * rows[r][1] + xi[2] * rows[r][2]) / length;
+  for (int r = 0; r < 3; ++r) s->direction[r][k] = part[r];
+  s->share[0][k] = part[0] * part[0];
+  s->share[1][k] = part[1] * part[1];
+  s->share[2][k] = 2 * part[0] * part[1];
+  if (s->parts == PARTS) {
+    s->share[3][k] = part[2] * part[2];
+    s->share[4][k] = 2 * part[1] * part[2];
+    s->share[5][k] = 2 * part[0] * part[2];
   }
-  const breccia_law *law = s->material->law;
-  for (int k = 0; k < s->count && law->begin; ++k) {
-    law->begin(s->material->constants, s->committed + (size_t)(k * s->material->history_values));
-    law->begin(s->material->constants, s->trial + (size_t)(k * s->material->history_values));
+  s->weight[k] = weight * length / 2;
+  s->length[k] = s->material->length;
+}
+
+/** Takes the bonds of families in the middle of a block of particles from a file. */
+static bool strength_take_cloud(StrengthBonds *s, const BondBased *b, int block, const double *const rows[3])
+{
+  const Family *f = b->family;
+  const Particles *p = b->particles;
+  int64_t places[STRENGTH_FAMILIES];
+  const int families = whole_families_in_the_middle(b->body, f, block, LEAST_FILLED, STRENGTH_FAMILIES, places);
+  double volume = 0;
+  for (int turn = 0; turn < 2; ++turn) { /* first counted, then taken */
+    int bonds = 0;
+    for (int n = 0; n < families; ++n) {
+      const int64_t place = places[n], slice = place / SLICE;
+      if (turn == 0) volume += p->volume[place];
+      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+        if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+        const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+        if (turn)
+          strength_take(s, bonds, bond.xi, bond.length, b->per_stress[block] * bond.weight * p->volume[place] / volume,
+                        rows);
+        ++bonds;
+      }
+    }
+    if (turn) continue;
+    s->count = bonds;
+    if (!bonds || !strength_reserve(s)) return false;
   }
   return true;
 }
 
-/** Finds the stresses along the rows for strains along them. @return false if the law could not be integrated */
-static bool strength_try(StrengthBonds *s, const double strain[3], double stress[3])
+static bool strength_take_lattice(StrengthBonds *s, const BondBased *b, int block, const double *const rows[3])
+{
+  const int first = b->family->pattern_begin[block];
+  s->count = b->family->pattern_begin[block + 1] - first;
+  if (!strength_reserve(s)) return false;
+  for (int k = 0; k < s->count; ++k) {
+    const Pattern *p = &b->family->patterns[first + k];
+    strength_take(s, k, p->xi, p->length, b->per_stress[block] * p->weight, rows);
+  }
+  return true;
+}
+
+static void strength_begin_histories(StrengthBonds *s)
+{
+  const breccia_law *law = s->material->law;
+  for (int k = 0; k < s->count && law->begin; ++k) {
+    law->begin(s->material->constants, s->committed + (ptrdiff_t)k * s->material->history_values);
+    law->begin(s->material->constants, s->trial + (ptrdiff_t)k * s->material->history_values);
+  }
+}
+
+static bool strength_begin(StrengthBonds *s, const BondBased *b, int block, const double n[3])
+{
+  double across[2][3];
+  strength_turn(n, across);
+  const double *const rows[3] = {n, across[0], across[1]};
+  const bool lattice = b->body->lattices[block].chunks != 0;
+  if (!(lattice ? strength_take_lattice(s, b, block, rows) : strength_take_cloud(s, b, block, rows))) return false;
+  strength_begin_histories(s);
+  return true;
+}
+
+/** Finds the stress of a strain. @return false if the law could not be integrated */
+static bool strength_try(StrengthBonds *s, StrengthState *state)
 {
   breccia_batch batch = {.size = sizeof batch,
                          .count = s->count,
                          .strain = {s->strain},
                          .stress = {s->stress},
+                         .tangent = s->tangent,
                          .committed = s->committed,
                          .trial = s->trial,
                          .length = s->length,
                          .lateral = s->lateral};
-  const double around[6] = {strain[0], strain[1], strain[2], 0, 0, 0};
+  const double *e = state->strain;
+  const double around[6] = {[XX] = e[0], [YY] = e[1], [ZZ] = e[3], [XY] = e[2], [YZ] = e[4], [ZX] = e[5]};
   for (int k = 0; k < s->count; ++k) {
-    const double n[3] = {sqrt(s->share[0][k]), sqrt(s->share[1][k]), sqrt(s->share[2][k])};
-    s->strain[k] = s->share[0][k] * strain[0] + s->share[1][k] * strain[1] + s->share[2][k] * strain[2];
+    const double n[3] = {s->direction[0][k], s->direction[1][k], s->direction[2][k]};
     s->lateral[k] = bond_elongation_of_pressure(s->space, around, n);
+    s->strain[k] = 0;
+    for (int r = 0; r < s->parts; ++r) s->strain[k] += s->share[r][k] * state->strain[r];
   }
   if (material_update(s->material, &batch) >= 0) return false;
-  for (int r = 0; r < 3; ++r) {
-    stress[r] = 0;
-    for (int k = 0; k < s->count; ++k) stress[r] += s->weight[k] * s->stress[k] * s->share[r][k];
+  for (int r = 0; r < s->parts; ++r) {
+    state->stress[r] = 0;
+    for (int k = 0; k < s->count; ++k) state->stress[r] += s->weight[k] * s->stress[k] * s->share[r][k];
   }
   return true;
 }
@@ -126,21 +203,35 @@ static void strength_commit(StrengthBonds *s)
   s->trial = held;
 }
 
-/** Solves for the lateral strains at which the lateral stresses vanish, by steps with the elastic stiffness.
- *  @return false if the law could not be integrated, or the steps do not converge */
-static bool strength_solve_sides(StrengthBonds *s, int dimensions, double tolerance, double strain[3], double stress[3])
+/** Corrects the parts across the pull by a stiffness of the bonds: tangents above 0, or the elastic one.
+ *  @return false if that stiffness resists no correction */
+static bool strength_correct(const StrengthBonds *s, bool elastic, StrengthState *state)
 {
-  double stiffness[3] = {0};
-  for (int r = 1; r < dimensions; ++r)
-    for (int k = 0; k < s->count; ++k)
-      for (int q = 1; q < dimensions; ++q)
-        stiffness[r] += material_young(s->material) * s->weight[k] * s->share[r][k] * s->share[q][k];
-  for (int turn = 0; turn < STRENGTH_TURNS; ++turn) {
+  const double young = material_young(s->material);
+  const int sides = s->parts - 1;
+  double stiffness[(PARTS - 1) * (PARTS - 1)] = {0}, correction[PARTS - 1];
+  for (int r = 0; r < sides; ++r) correction[r] = state->stress[r + 1];
+  for (int k = 0; k < s->count; ++k) {
+    const double slope = s->weight[k] * (elastic ? young : fmax(0, s->tangent[k]));
+    for (int r = 0; r < sides; ++r)
+      for (int q = 0; q < sides; ++q) stiffness[r * sides + q] += slope * s->share[r + 1][k] * s->share[q + 1][k];
+  }
+  if (!linear_solve(sides, stiffness, 1, correction)) return false;
+  for (int r = 0; r < sides; ++r) state->strain[r + 1] -= correction[r];
+  return true;
+}
+
+/** Solves for the parts of strain at which stresses across the pull vanish.
+ *  @return false if the law could not be integrated, or iterations do not converge */
+static bool strength_solve_sides(StrengthBonds *s, double tolerance, StrengthState *state)
+{
+  for (int turn = 0; turn < STRENGTH_TURNS + STRENGTH_ELASTIC_TURNS; ++turn) {
     double left = 0;
-    if (!strength_try(s, strain, stress)) return false;
-    for (int r = 1; r < dimensions; ++r) left = fmax(left, fabs(stress[r]));
+    if (!strength_try(s, state)) return false;
+    for (int r = 1; r < s->parts; ++r) left = fmax(left, fabs(state->stress[r]));
     if (left <= tolerance) return true;
-    for (int r = 1; r < dimensions; ++r) strain[r] -= stress[r] / stiffness[r];
+    const bool elastic = turn >= STRENGTH_TURNS || !strength_correct(s, false, state);
+    if (elastic && !strength_correct(s, true, state)) return false;
   }
   return false;
 }
@@ -148,18 +239,18 @@ static bool strength_solve_sides(StrengthBonds *s, int dimensions, double tolera
 /** Returns what one bond carries at most. */
 static double strength_of_bond(const Material *m, double step)
 {
-  StrengthBonds one = {.material = m, .space = SPACE_BAR, .count = 1};
-  double most = 0, stress[3];
+  StrengthBonds one = {.material = m, .space = SPACE_BAR, .count = 1, .parts = 1};
+  double most = 0;
   bool going = strength_reserve(&one);
   if (going) {
     one.share[0][0] = one.weight[0] = 1;
     one.length[0] = m->length;
-    if (m->law->begin) m->law->begin(m->constants, one.committed);
-    if (m->law->begin) m->law->begin(m->constants, one.trial);
+    strength_begin_histories(&one);
   }
   for (int k = 1; going && k <= STRENGTH_STEPS; ++k) {
-    going = strength_try(&one, (const double[]){k * step, 0, 0}, stress) && stress[0] > strength_fallen * most;
-    most = fmax(most, stress[0]);
+    StrengthState state = {.strain = {k * step}};
+    going = strength_try(&one, &state) && state.stress[0] > strength_fallen * most;
+    most = fmax(most, state.stress[0]);
     strength_commit(&one);
   }
   strength_free(&one);
@@ -169,21 +260,25 @@ static double strength_of_bond(const Material *m, double step)
 double bond_uniaxial_strength(const void *formulation, int block, const double n[3])
 {
   const BondBased *b = formulation;
+  const int dimensions = b->body->dimensions;
+  if (dimensions < 2 || block_is_foreign(b->foreign, b->particles, block)) return NAN;
   const Material *m = bond_material(b, block);
-  if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block) || m->remote ||
-      m->law->components != 1 || !(m->softening_energy > 0))
-    return NAN;
+  if (m->remote || m->law->components != 1 || !(m->softening_energy > 0)) return NAN;
   const double begin = sqrt(2 * m->softening_energy / material_young(m)), step = strength_increment * begin,
                bond = strength_of_bond(m, step);
-  StrengthBonds s = {.material = m, .space = b->space};
-  double strain[3] = {0}, stress[3], most = 0;
-  bool going = strength_begin(&s, b, block, n) && bond > 0;
+  StrengthBonds s = {.material = m, .space = b->space, .parts = dimensions == 2 ? 3 : PARTS};
+  StrengthState state = {.strain = {0}}, before = state;
+  double most = 0;
+  bool going = bond > 0 && strength_begin(&s, b, block, n);
   for (int k = 1; going && k <= STRENGTH_STEPS; ++k) {
-    strain[0] = k * step;
-    going = strength_solve_sides(&s, b->body->dimensions, strength_side_tolerance * bond, strain, stress) &&
-            stress[0] > strength_fallen * most;
-    most = fmax(most, stress[0]);
+    const StrengthState last = state;
+    for (int r = 1; r < s.parts; ++r) state.strain[r] += last.strain[r] - before.strain[r];
+    state.strain[0] = k * step;
+    going =
+        strength_solve_sides(&s, strength_side_tolerance * bond, &state) && state.stress[0] > strength_fallen * most;
+    most = fmax(most, state.stress[0]);
     strength_commit(&s);
+    before = last;
   }
   strength_free(&s);
   return most > 0 ? most / bond : NAN;
@@ -192,19 +287,21 @@ double bond_uniaxial_strength(const void *formulation, int block, const double n
 double bond_uniaxial_crushing(const void *formulation, int block, const double n[3])
 {
   const BondBased *b = formulation;
+  const int dimensions = b->body->dimensions;
   const Material *m = bond_material(b, block);
-  if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block) || m->remote ||
-      m->law->components != 1 || isnan(material_compressive_strength(m)))
+  if (dimensions < 2 || !b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block) ||
+      m->remote || m->law->components != 1 || isnan(material_compressive_strength(m)))
     return NAN;
   const double wanted = material_compressive_strength(m), step = -crushing_increment * wanted / material_young(m);
-  StrengthBonds s = {.material = m, .space = b->space};
-  double strain[3] = {0}, stress[3], most = 0;
+  StrengthBonds s = {.material = m, .space = b->space, .parts = dimensions == 2 ? 3 : PARTS};
+  StrengthState state = {.strain = {0}};
+  double most = 0;
   bool going = strength_begin(&s, b, block, n);
   for (int k = 1; going && k <= STRENGTH_STEPS; ++k) {
-    strain[0] = k * step;
-    going = strength_solve_sides(&s, b->body->dimensions, crushing_side_tolerance * wanted, strain, stress) &&
-            -stress[0] > strength_fallen * most;
-    most = fmax(most, -stress[0]);
+    state.strain[0] = k * step;
+    going =
+        strength_solve_sides(&s, crushing_side_tolerance * wanted, &state) && -state.stress[0] > strength_fallen * most;
+    most = fmax(most, -state.stress[0]);
     strength_commit(&s);
   }
   strength_free(&s);

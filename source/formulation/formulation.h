@@ -252,14 +252,17 @@ struct FormulationType {
    * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
    *  @return NaN for particles that stand in no lattice */
   double (*crack_length)(const void *formulation, int block, const double normal[3]);
-  /** Returns what the lattice of a block carries at most where it is pulled along a unit vector and free across it,
-   * over what its softening law carries. NULL: the law's own.
-   *  @return NaN for particles that stand in no lattice, laws that do not soften or are in servers */
+  /** Returns what the inside of a block carries at most where it is pulled along a unit vector and free across it, over
+   * what its softening law carries as prepared. NULL: the law's own.
+   *  @return NaN for bars and lines, and laws that do not soften or are in servers */
   double (*uniaxial_strength)(const void *formulation, int block, const double direction[3]);
   /** Returns what the lattice of a block carries at most where it is pressed along a unit vector and free across it, over
    * the compressive strength of its law. NULL: nobody knows.
    *  @return NaN for particles that stand in no lattice, laws that tell no such strength or are in servers */
   double (*uniaxial_crushing)(const void *formulation, int block, const double direction[3]);
+  /** Returns true if the tensile strength of a law that softens along bonds is that of the body, so that bonds take a
+   * share of it (domain/tensile_strength.h). NULL: it is that of bonds. */
+  bool (*strength_of_body)(const void *formulation);
   /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL:
    * none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);

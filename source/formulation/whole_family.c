@@ -22,3 +22,33 @@ bool whole_family_at(const Family *family, int block, int64_t place, double volu
   return p->block[place / SLICE] == block && p->number[place] >= 0 &&
          p->volume[place] + family_volume(family, (int32_t)place) >= volume;
 }
+
+int whole_families_in_the_middle(const Body *body, const Family *family, int block, double least, int most,
+                                 int64_t *places)
+{
+  const Particles *p = family->particles;
+  const double volume = whole_family_volume(body, family, block, least);
+  double middle[3] = {0}, inside = 0;
+  int count = 0;
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (!whole_family_at(family, block, place, volume)) continue;
+    for (int k = 0; k < 3; ++k) middle[k] += p->position[k][place];
+    ++inside;
+  }
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (!whole_family_at(family, block, place, volume)) continue;
+    int at = count < most ? count++ : most;
+    double away[2] = {0};
+    for (; at > 0; --at) { /* nearer than the last of the list */
+      for (int n = 0; n < 2; ++n) away[n] = 0;
+      for (int k = 0; k < 3; ++k) {
+        away[0] += pow(p->position[k][place] - middle[k] / inside, 2);
+        away[1] += pow(p->position[k][places[at - 1]] - middle[k] / inside, 2);
+      }
+      if (!(away[0] < away[1])) break;
+      if (at < most) places[at] = places[at - 1];
+    }
+    if (at < most) places[at] = place;
+  }
+  return count;
+}

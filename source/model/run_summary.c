@@ -1,4 +1,5 @@
 /* What a run did: summary.json, and the same in words. */
+#include "domain/tensile_strength.h"
 #include "domain/toughness.h"
 #include "model/ground_step.h"
 #include "model/run.h"
@@ -461,6 +462,7 @@ void run_tell_outcome(Run *run, int status)
         (long long)d->family.bonds / 2);
     if (run->wish->folder) add_other_causes(d, run->wish->folder, t);
     toughness_describe(d, model->spec->failure, model->units, t);
+    tensile_strength_describe(d, t);
   } else if (d->failure.criterion) {
     text_add(t, "no bond broke\n");
   }

@@ -12,9 +12,10 @@ static void bars_spend_their_fracture_energy(void **state)
       {hybrid, links, "plane stress", WEAK_LEANING, 6, 10, 0.3e-3, false},
       {"formulation: correspondence", links, "plane stress", WEAK_LEANING, 6, 10, 0.3e-3, false},
       {"formulation: micropolar", links, "plane strain", WEAK_LEANING, 6, 10, 0.3e-3, false},
-      {"formulation: bond-based", "model: bilinear-softening", "plane stress", WEAK_LEANING, 6, 10, 0.3e-3, false},
-      {"formulation: bond-based, surface correction: energy", "model: exponential-softening", "plane stress",
-       WEAK_LEANING, 6, 10, 0.3e-3, false},
+      {"formulation: bond-based, strength of: bonds", "model: bilinear-softening", "plane stress", WEAK_LEANING, 6, 10,
+       0.3e-3, false},
+      {"formulation: bond-based, surface correction: energy, strength of: bonds", "model: exponential-softening",
+       "plane stress", WEAK_LEANING, 6, 10, 0.3e-3, false},
   };
   const int count = under_sanitizers() ? 2 : sizeof bars / sizeof *bars;
   for (int k = 0; k < count; ++k) {
@@ -53,7 +54,7 @@ static void bonds_near_faces_are_missing_in_a_flat_crack(void **state)
   (void)state;
   const int rows[] = {6, 12};
   for (int k = 0; k < (whole_walks() ? 2 : 1); ++k) {
-    const TornBar bar = {"formulation: bond-based",
+    const TornBar bar = {"formulation: bond-based, strength of: bonds",
                          "model: bilinear-softening",
                          "plane stress",
                          WEAK_COLUMN,

@@ -134,7 +134,7 @@ static const double uncut = 0.04;
   "            shape: {box: {from: [0, 0], to: [0.29, 0.05]}}}\n"                                                      \
   "  middle: {<<: *b, material: weak, shape: {box: {from: [0.29, 0], to: [0.31, 0.05]}}}\n"                            \
   "  right: {<<: *b, shape: {box: {from: [0.31, 0], to: [0.6, 0.05]}}}\n"                                              \
-  "peridynamics: {formulation: bond-based, space: plane stress, surface correction: energy}\n"                         \
+  "peridynamics: {formulation: bond-based, space: plane stress, surface correction: energy, strength of: bonds}\n"     \
   "cracks: [{cut: {line: [[0.3, 0], [0.3, 0.01]]}}]\n"                                                                 \
   "loads:\n"                                                                                                           \
   "  - {on: {face: x-, layers: 3}, roller: [1, 0]}\n"                                                                  \
