@@ -66,7 +66,7 @@ bool material_can_reduce(const Material *material);
  * were */
 int material_reduce(Material *material, double factor, char *reason, size_t size);
 
-/** Returns true if the law softens along bonds, and the tensile strength of bonds can be set apart from that of the deck. */
+/** Returns true if the law softens along bonds, and bonds can take a share of the tensile strength of the deck. */
 bool material_can_share(const Material *material);
 /** Prepares the law with a share of the tensile strength that the deck gives, in place of the present share. The
  *  fracture energy stays. By one thread, before points are updated.

@@ -1,7 +1,7 @@
-/* Tensile strength of bodies whose bonds soften (docs/theory.md 2). A body carries F(x) times the strength of its bonds,
- * F being the largest over directions where bonds have the share x of the tensile strength: slanted bonds gain when those
- * along the pull have begun to soften. Bonds take the share x with x F(x) = 1, so that the body carries the tensile
- * strength. F changes slowly with x, so that x = 1 / F(x) converges by turns. */
+/* Tensile strength of bodies whose bonds soften (docs/theory.md 2). Where bonds have the share x of the tensile
+ * strength of the deck, a body carries F(x) times what its bonds carry, in the direction in which it carries most:
+ * slanted bonds gain when those along the pull have begun to soften. Bonds take the share with x F(x) = 1, so that the
+ * body carries the tensile strength. F changes slowly with x, so that x = 1 / F(x) converges by turns. */
 #include "domain/tensile_strength.h"
 
 #include "formulation/whole_family.h"

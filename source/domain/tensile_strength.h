@@ -9,8 +9,8 @@
  *  @return BRECCIA_OK, or BRECCIA_USER_ERROR with the reason */
 int tensile_strength_set(Domain *domain, const DeckReader *reader, const SectionList *materials);
 
-/** Adds a line for each material and lattice of bonds that soften: what a body carries pulled one way, least and largest
- * over directions. */
+/** Adds a line for each material and lattice of bonds that soften: what a body carries pulled one way, least and
+ * largest over directions. */
 void tensile_strength_describe(const Domain *domain, Text *text);
 
 #endif

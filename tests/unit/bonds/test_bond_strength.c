@@ -113,8 +113,8 @@ static double strip_peak(const char *law, const char *lattice, const char *horiz
   return most;
 }
 
-/** A strip carries the tensile strength of the deck in the strongest direction of its lattice, never more than 5 % more,
- *  and as much less in the others as is told. */
+/** A strip carries the tensile strength of the deck in the strongest direction of its lattice, never more than 5 %
+ *  more, and as much less in the others as is told. */
 static void strips_carry_their_tensile_strength(void **state)
 {
   (void)state;
