@@ -487,6 +487,13 @@ double material_poisson(const Material *material)
   return (3 * material->bulk - 2 * material->shear) / (2 * (3 * material->bulk + material->shear));
 }
 
+bool material_is_as_stiff(const Material *one, const Material *other)
+{
+  const double rounding = 1e-9;
+  return fabs(one->bulk - other->bulk) <= rounding * fabs(one->bulk) &&
+         fabs(one->shear - other->shear) <= rounding * fabs(one->shear);
+}
+
 bool material_has_tangent(const Material *m)
 {
   double none[6] = {0}, stress[6], tangent[36], *history = m->remote ? NULL : material_begin_twice(m);

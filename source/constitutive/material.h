@@ -85,6 +85,8 @@ static inline int material_update(const Material *material, const breccia_batch 
 /** Young's modulus and Poisson's ratio of the undamaged material. */
 double material_young(const Material *material);
 double material_poisson(const Material *material);
+/** Returns true if two materials have the same first moduli, to rounding. */
+bool material_is_as_stiff(const Material *one, const Material *other);
 /** Whether the law tells how stress changes with strain, asked of an unstrained point; that of a server is taken to do so, as is one that cannot be
  *  integrated there. */
 bool material_has_tangent(const Material *material);

@@ -29,18 +29,13 @@ static int add_rows(Runs *r, int material, int64_t rows, Error *error)
   return BRECCIA_OK;
 }
 
-/** Rows of the bonds of a slice: its own material's, then those of the materials at other ends. */
+/** Adds the rows of the bonds of a slice: its own material's, then second rows of other materials. */
 static int add_bonds(const Domain *d, const BondList *l, int64_t slice, Runs *r, Error *error)
 {
   int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];
   for (; n < l->single_first[slice + 1] && l->single[n] >= 0; ++n) ++own;
   int status = add_rows(r, d->material[slice], own, error);
-  for (; n < l->single_first[slice + 1] && !status; ++n) {
-    int64_t slot;
-    int lane;
-    bond_list_bond(l, &d->family, slice, r->rows, &slot, &lane);
-    status = add_rows(r, d->material[family_bond(&d->family, slice, slot, lane).neighbour / SLICE], 1, error);
-  }
+  for (; n < l->single_first[slice + 1] && !status; ++n) status = add_rows(r, l->single_material[n], 1, error);
   return status;
 }
 
@@ -81,6 +76,23 @@ static int create_tensors(Domain *d, Error *error)
   return BRECCIA_OK;
 }
 
+/** Lists the bonds of a region, with second rows where its formulation laminates points. */
+static int region_list_bonds(Domain *d, Region *region, Error *error)
+{
+  BondListOf of = {.material = d->material, .foreign = region->foreign};
+  int32_t *stiffness = NULL;
+  if (region->type->laminates) {
+    stiffness = memory_zeroed((size_t)d->particles->slices, sizeof *stiffness, "list of bonds", error);
+    if (!stiffness) return BRECCIA_FAILURE;
+    for (int64_t s = 0; s < d->particles->slices; ++s)
+      while (!material_is_as_stiff(&d->materials[stiffness[s]], &d->materials[d->material[s]])) ++stiffness[s];
+    of.stiffness = stiffness;
+  }
+  const int status = bond_list_create(&region->bonds, &d->family, &of, error);
+  free(stiffness);
+  return status;
+}
+
 int region_create_points(Domain *d, Region *region, Space space, bool may_give_up, const BondLength *of, Error *error)
 {
   const Particles *p = d->particles;
@@ -99,8 +111,7 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   spec.no_tensors = region->type->knows_hooke && spec.on_bonds && domain_is_hookean(d, region) && !d->is_strained &&
                     !d->begins_under_stress;
   const bool on_particles = spec.components == 6 && !spec.on_bonds;
-  if (spec.on_bonds && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
-    return BRECCIA_FAILURE;
+  if (spec.on_bonds && region_list_bonds(d, region, error)) return BRECCIA_FAILURE;
   if (on_particles && d->region_count > 1) {
     if (create_tensors(d, error)) return BRECCIA_FAILURE;
     spec.strain = d->strain;

@@ -3,7 +3,9 @@
  *
  * A bond has its row in the slice of its end with the lower place, its owner. Rows of a slice: eight for each of its lattice slots that lead
  * to higher places, lane by lane (also where a lane has no bond); then one for each stored bond of which it is the owner; then a second one
- * for each of these that joins two materials, for the material of the other end.
+ * for each of these that joins two materials, for the material of the other end. Where the owner of the list asks for
+ * `stiffness`, bonds of one stiffness whose ends have common neighbours of another one have a second row, too, for the
+ * material of these: lattice bonds as well as stored ones.
  * Always true: rows first[s] .. first[s + 1] - 1 are those of slice s; rows of one material in one slice lie side by side, the owner's first. */
 #ifndef BRECCIA_FAMILY_BOND_LIST_H
 #define BRECCIA_FAMILY_BOND_LIST_H
@@ -18,24 +20,36 @@ typedef struct BondList {
   int64_t *owned_first;  /* [slices + 1] entries of `owned` */
   uint16_t *owned;       /* lattice slots that have rows, counted from the first slot of their slice */
   int64_t *single_first; /* [slices + 1] entries of `single` */
-  int32_t
-      *single; /* stored bonds that have rows: 8 (slot - first slot of the slice) + lane; second rows: -1 less that */
-  uint8_t *keeps; /* [stored_slots] bits of the lanes that own their bonds */
+  /** Stored bonds that have rows: 8 (slot - first slot of the slice) + lane; second rows, also of lattice bonds: -1 less
+   *  that. */
+  int32_t *single;
+  int32_t *single_material; /* [entries of `single`] material of the row */
+  uint8_t *pairs_lattice;   /* [slices] 1: some lattice bonds of the slice have second rows; NULL: none in any slice */
+  uint8_t *keeps;           /* [stored_slots] bits of the lanes that own their bonds */
   /** [slots][2] of a lattice slot: the row of lane 0. Where the neighbours are the owners, they may stand in two slices: lanes with neighbours in the
    *  first of them have row [0] + lane, the others [1] + lane. */
   int32_t (*slot_row)[2]; /* with BOND_LIST_SPARE entries behind the last */
   int32_t *stored_row;    /* [stored_slots + FAMILY_AHEAD][8] the row of the owner's material */
-  int32_t *partner_row;   /* [stored_slots][8] of the other end's, or -1; NULL: there is one material */
+  /** [stored_slots][8] second row of the bond: of the other end's material, or -2 less the row of a material around the
+   *  bond; -1: none; NULL: there is one material. */
+  int32_t *partner_row;
 } BondList;
 
-/** @param[in] material  [slices]
- *  @param[in] foreign  [slices] 1: not of those to whom the list belongs. Of bonds with a foreign end the other one is the owner, and
- *                      they have one row. NULL: there are none */
-int bond_list_create(BondList *list, const Family *family, const int32_t *material, const uint8_t *foreign,
-                     Error *error);
+/** What rows of bonds depend on beside families. */
+typedef struct BondListOf {
+  const int32_t *material; /* [slices] */
+  /** [slices] equal numbers: materials of one stiffness. NULL: only bonds that join two materials have second rows. */
+  const int32_t *stiffness;
+  /** [slices] 1: not of those to whom the list belongs. Of bonds with a foreign end the other one is the owner, and
+   *  they have one row. NULL: there are none */
+  const uint8_t *foreign;
+} BondListOf;
+
+int bond_list_create(BondList *list, const Family *family, const BondListOf *of, Error *error);
 void bond_list_destroy(BondList *list);
 
-/** Rows of the bond of a lane: of the law of this end and of that at the other end, the same one if they are of one material. */
+/** Finds the rows of the bond of a lane: of the law of this end and of that at the other end, the same one if there is no
+ *  second row. Of ends of one stiffness the second row is that of the other material around. */
 void bond_list_rows(const BondList *list, const Family *family, int64_t slice, int64_t slot, int lane, int64_t rows[2]);
 
 /** Slot and lane of a row of a slice. @return whether it is a second row */

@@ -160,7 +160,9 @@ struct FormulationType {
   double horizon;                /* in spacings, where the deck gives none; 0: 3.015 */
   bool row_sums;                 /* neighbours read sums along lattice rows */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
-  bool knows_hooke;       /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
+  bool knows_hooke; /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
+  /** Points whose particles are of two stiffnesses are laminates: both materials have a point there. */
+  bool laminates;
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */

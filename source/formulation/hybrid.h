@@ -1,12 +1,14 @@
 /* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
  * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), bonds of Hooke's law (hybrid_hooke.c, inside cubic lattices hybrid_planes.c,
  * of which bonds hybrid_planes_setup.c), rows and their members one by one (hybrid_rows.c), single bonds and places
- * (hybrid_bonds.c), and what breaking bonds take with them (hybrid_breaking.c).
+ * (hybrid_bonds.c), what breaking bonds take with them (hybrid_breaking.c), and points at interfaces of two materials
+ * (hybrid_laminate.c).
  *
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
  *   G = sum over C in S of u_C (x) g_C,
  * a least-squares fit over S that is made exact along the bond, so that G xi = eta and no pattern of short waves goes unseen (docs/theory.md 5).
- * Points are the rows of the region's bond list; a bond of two materials has two rows, each for half of its volume.
+ * Points are the rows of the region's bond list; a bond whose members are of two materials has two rows, which are the
+ * parts of a laminate.
  *
  * Bonds of a lattice slot whose members all stand in the same lattice have their geometry in a table of distinct ones: members are lattice vectors from the
  * owner A, and all of them but A are neighbours of A, so that the bases of A's slots lead to eight members at once. What a slice's points exert is
@@ -92,6 +94,19 @@ typedef struct HybridPlanes {
   bool full;                          /* there is a particle in every place */
 } HybridPlanes;
 
+/** Part that one material has of a point whose members are of two: a laminate of layers across a normal (docs/theory.md
+ *  5.8). The strain of the part is E + sym(a (x) n), where E is the strain of the bond and
+ *    a = (stretch E_nn + poisson (tr E - E_nn)) n + 2 slide (E n - E_nn n). */
+typedef struct HybridLaminate {
+  int32_t own, other;             /* materials: of the row, and of the other part */
+  double normal[3];               /* unit vector n of the layers, from `own` to `other` */
+  double plane;                   /* distance of the interface from the owner of the bond along n [length] */
+  double share;                   /* of the laminate in the point, 0 where no normal can be told .. 1 */
+  double apart;                   /* volume fraction of the material where no normal can be told */
+  double stretch, poisson, slide; /* coefficients of a, by the bonds that are intact */
+  double fraction;                /* volume fraction of the material, by the bonds that are intact */
+} HybridLaminate;
+
 typedef struct Hybrid Hybrid;
 
 /** What bonds along lattices exert, of slices whose laws are all Hooke's (hybrid_hooke.c). */
@@ -145,13 +160,17 @@ struct Hybrid {
   int32_t (
       *reaching)[2]; /* [slices] the first stripe and the last that exert something on it; first > last: none does */
 
-  int64_t listed;     /* rows, those of single bonds first */
-  int64_t *row;       /* [listed] */
-  int64_t *first;     /* [listed + 1] of the members of a row */
-  int32_t *member;    /* places: of each row the owner of its bond, the other end, then those that both see */
-  double (*g)[3];     /* [members] 0 of those that a broken bond hides */
-  double (*area)[3];  /* [listed] */
-  double *volume;     /* [listed] 0: there is no bond */
+  int64_t listed;    /* rows, those of single bonds first */
+  int64_t *row;      /* [listed] */
+  int64_t *first;    /* [listed + 1] of the members of a row */
+  int32_t *member;   /* places: of each row the owner of its bond, the other end, then those that both see */
+  double (*g)[3];    /* [members] 0 of those that a broken bond hides */
+  double (*area)[3]; /* [listed] */
+  double *volume;    /* [listed] 0: there is no bond */
+  int32_t *layer;    /* [listed] index of its laminate, or -1; NULL: there are none */
+  HybridLaminate *laminate;
+  int32_t laminates, laminate_room;
+  double (*contact)[4]; /* [places] while rows are made: hybrid_laminate_contacts; else NULL */
   uint8_t *idle;      /* [listed] 1: it carries nothing: no bond, a broken one, or its members span no space any more */
   int64_t *met_first; /* [places + 1] of the listed rows that a place is a member of, or NULL: none are listed */
   struct HybridMet {
@@ -162,6 +181,7 @@ struct Hybrid {
   double *force;
   double *shown;      /* [places][LANES] displacements, for the same reason; NULL: no rows are listed */
   double (*tried)[3]; /* [most members of a listed row] for geometries that are tried out, by one thread */
+  double (*tried_from)[3], *tried_weight; /* [most members of a listed row] while vectors are found, by one thread */
 };
 
 /** Where a row stands. */
@@ -179,7 +199,9 @@ typedef struct HybridView {
   int count;
   const int32_t *member;
   const double (*g)[3];
+  const HybridLaminate *laminate; /* or NULL */
   double area[3], volume;
+  HybridLaminate tried_laminate;
   int32_t near[HYBRID_NEAR];
   double tried[HYBRID_NEAR][3];
 } HybridView;
@@ -242,6 +264,46 @@ static inline int hybrid_vector(const Hybrid *h, int block, int64_t slice, int64
 {
   return family_pattern(h->family, slice, slot) - h->family->pattern_begin[block] + 1;
 }
+
+/* ---- points at interfaces of two materials (hybrid_laminate.c) ---- */
+
+/** Finds how places touch particles of another stiffness: sum of the vectors to nearest ones, and of their lengths.
+ *  Nothing happens where the body has one stiffness. */
+int hybrid_laminate_contacts(Hybrid *h, Error *error);
+/** Makes the laminate of a listed row whose bond has two rows of unlike stiffness; others have none. */
+int hybrid_laminate_create(Hybrid *h, int64_t number, Error *error);
+/** Returns the laminate of a listed row, or NULL. */
+static inline const HybridLaminate *hybrid_laminate(const Hybrid *h, int64_t number)
+{
+  return h->layer && h->layer[number] >= 0 ? &h->laminate[h->layer[number]] : NULL;
+}
+/** Members of a point, as its vectors g are made. */
+typedef struct HybridMembers {
+  int count;
+  const int32_t *member;
+  const double *weight;    /* [count] of the fit; 0: hidden */
+  const double (*from)[3]; /* [count] distance from the owner */
+} HybridMembers;
+/** Finds the volume fraction and the coefficients of a laminate by its members, and takes from their vectors g what a
+ *  kink of the displacement at the interface would make of strains in its plane.
+ *  @param[in,out] g  [count] */
+void hybrid_laminate_weigh(const Hybrid *h, const HybridMembers *of, HybridLaminate *laminate, double (*g)[3]);
+/** Returns the weight in the fit of a member of another material than both ends of the bond. */
+double hybrid_laminate_alike(const Hybrid *h, const int32_t *member, int n, const HybridLaminate *laminate);
+/** Returns true if interfaces of two materials turn from bond to bond, as where they cross rows of particles. */
+bool hybrid_laminate_crosses_rows(const Hybrid *h);
+/** Turns the strain of a bond into that of a part. @param[in] laminate  or NULL @param[in] free  strain without stress,
+ *  alike in all directions; 0 for changes of strain */
+void hybrid_laminate_strain(const Hybrid *h, const HybridLaminate *laminate, double free, double strain[6]);
+/** Turns the stress of a part, or its change, into what acts on the strain of the bond, its transpose. */
+void hybrid_laminate_stress(const Hybrid *h, const HybridLaminate *laminate, double stress[6]);
+/** Turns a tangent of a part into that of the bond. @param[in,out] tangent  [6][6] */
+void hybrid_laminate_tangent(const Hybrid *h, const HybridLaminate *laminate, double tangent[36]);
+/** Returns the free strain of a bond as laws take it, the mean of both ends. */
+double hybrid_laminate_free(const Hybrid *h, const int32_t *member);
+/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
+ *  @return false where it is as flat as no strain can be found in */
+bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
 
 /** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */
 int hybrid_lattices_create(Hybrid *h, Error *error);

@@ -35,31 +35,45 @@ int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *e
   double strain[6];
   hybrid_tensors(h, row, &view, 0, strain, point->stress);
   points_tangent(h->points, row, point->tangent);
+  hybrid_laminate_stress(h, view.laminate, point->stress);
+  hybrid_laminate_tangent(h, view.laminate, point->tangent);
   return BRECCIA_OK;
 }
 
 /* ---- forces between two particles ---- */
 
+/** Finds the stress of a part as it was in the state at which a step is linearised, and its change in the step. */
+static void find_change(const Hybrid *h, int64_t row, const HybridView *view, const double g0[9], const double g[9],
+                        double held[6], double stress[6])
+{
+  double strain[6], tangent[36];
+  if (h->hooke) {
+    hybrid_strain(h, g0, strain);
+    hybrid_laminate_strain(h, view->laminate, 0, strain);
+    hybrid_hooke_stress(&h->hooke[points_material(h->points, row) - h->materials], strain, held);
+  }
+  hybrid_strain_change(h, g0, g, strain);
+  hybrid_laminate_strain(h, view->laminate, 0, strain);
+  points_tangent(h->points, row, tangent);
+  for (int k = 0; k < 6; ++k) {
+    stress[k] = 0;
+    for (int j = 0; j < 6; ++j) stress[k] += tangent[6 * k + j] * strain[j];
+  }
+}
+
 /** F S of a row times its volume, of the state evaluated last; in a linearised step its change. */
 static void find_stress(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, double p[9])
 {
-  double g[9], g0[9], strain[6], stress[6], held[6], tangent[36];
+  double g[9], g0[9], strain[6], stress[6], held[6];
   hybrid_gradient(view, h->particles->displacement, g);
   if (!at || !h->hooke) hybrid_tensors(h, row, view, 0, strain, stress);
   memcpy(held, stress, sizeof held);
   if (at) {
     hybrid_gradient(view, at, g0);
-    if (h->hooke) {
-      hybrid_strain(h, g0, strain);
-      hybrid_hooke_stress(&h->hooke[points_material(h->points, row) - h->materials], strain, held);
-    }
-    hybrid_strain_change(h, g0, g, strain);
-    points_tangent(h->points, row, tangent);
-    for (int k = 0; k < 6; ++k) {
-      stress[k] = 0;
-      for (int j = 0; j < 6; ++j) stress[k] += tangent[6 * k + j] * strain[j];
-    }
+    find_change(h, row, view, g0, g, held, stress);
   }
+  hybrid_laminate_stress(h, view->laminate, stress);
+  hybrid_laminate_stress(h, view->laminate, held);
   hybrid_first_stress(h, g, stress, at ? g0 : NULL, held, p);
   for (int k = 0; k < 9; ++k) p[k] *= view->idle ? 0 : view->volume;
 }
@@ -210,13 +224,16 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   const Hybrid *h = formulation;
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  double strain[6], stress[6], other[6], normal[3], square = 0, traction = 0;
-  HybridView view;
-  hybrid_view(h, rows[0], &view);
-  const double *area = view.area;
-  hybrid_tensors(h, rows[0], &view, 0, strain, stress);
-  hybrid_tensors(h, rows[1], &view, 0, strain, other); /* both rows have the same members */
-  for (int k = 0; k < 6; ++k) stress[k] = (stress[k] + other[k]) / 2;
+  double strain[6], stress[6] = {0}, of[6], normal[3], square = 0, traction = 0, area[3] = {0}, volume = 0;
+  for (int n = 0; n < (rows[0] == rows[1] ? 1 : 2); ++n) {
+    HybridView view;
+    hybrid_view(h, rows[n], &view);
+    hybrid_tensors(h, rows[n], &view, 0, strain, of);
+    for (int k = 0; k < 6; ++k) stress[k] += view.volume * of[k];
+    for (int k = 0; k < 3; ++k) area[k] += view.area[k];
+    volume += view.volume;
+  }
+  for (int k = 0; k < 6; ++k) stress[k] /= volume;
   for (int k = 0; k < 3; ++k) square += area[k] * area[k];
   for (int k = 0; k < 3; ++k) normal[k] = area[k] / sqrt(square);
   *tension = 0;
@@ -271,7 +288,15 @@ void hybrid_even_stress(const void *formulation, const uint8_t *marked, double *
 
 /* ---- what people see of particles ---- */
 
-/** Means of the strains and stresses of the points on a place's bonds, by their volumes. */
+/** Returns true if a row is the part of a laminate that another material than that of a place has. */
+static bool is_other_part(const Hybrid *h, const HybridRow *at, int64_t place)
+{
+  const HybridLaminate *laminate = at->listed >= 0 ? hybrid_laminate(h, at->listed) : NULL;
+  return laminate && laminate->share > 0 && laminate->own != h->material[place / SLICE];
+}
+
+/** Finds the means of the strains and stresses of the points on a place's bonds, by their volumes; of laminates those of
+ *  the place's own material. */
 static void find_means(const Hybrid *h, int64_t place, double strain[6], double stress[6])
 {
   double whole = 0;
@@ -281,7 +306,7 @@ static void find_means(const Hybrid *h, int64_t place, double strain[6], double 
     const double volume = hybrid_volume(h, &at);
     double here[6], held[6];
     HybridView view;
-    if (!(volume > 0)) continue;
+    if (!(volume > 0) || is_other_part(h, &at, place)) continue;
     if (h->hooke) hybrid_view_at(h, &at, &view);
     hybrid_tensors(h, rows.row, &view, 0, here, held);
     for (int k = 0; k < 6; ++k) {

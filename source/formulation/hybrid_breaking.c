@@ -50,11 +50,17 @@ typedef struct PointInStep {
   double now[6];            /* strain at its end, by the members that it began with */
 } PointInStep;
 
+/** Returns by how much the free strain of a point grows in the step. */
+static double growth_of(const Hybrid *h, const HybridView *view)
+{
+  const double *growth = h->particles->free_growth;
+  return growth ? (growth[view->member[0]] + growth[view->member[1]]) / 2 : 0;
+}
+
 /** Begins strains of a point where they begin for its law: what the free strain grows by in the step does not strain it. */
 static void take_growth_off(const Hybrid *h, const HybridView *view, double from[6])
 {
-  const double *growth = h->particles->free_growth;
-  for (int k = 0; k < 3 && growth; ++k) from[k] += (growth[view->member[0]] + growth[view->member[1]]) / 2;
+  for (int k = 0; k < 3; ++k) from[k] += growth_of(h, view);
 }
 
 static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, double time)
@@ -65,6 +71,7 @@ static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, do
   take_growth_off(h, view, point.was);
   hybrid_gradient(view, h->particles->displacement, g);
   hybrid_strain(h, g, point.now);
+  hybrid_laminate_strain(h, view->laminate, hybrid_laminate_free(h, view->member), point.now);
   return point;
 }
 
@@ -89,6 +96,8 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
           (p->displacement[k / 3][left.member[n]] - time * p->velocity[k / 3][left.member[n]]) * left.g[n][k % 3];
   hybrid_strain(h, after, strain);
   hybrid_strain(h, before, first);
+  hybrid_laminate_strain(h, left.laminate, hybrid_laminate_free(h, view.member), strain);
+  hybrid_laminate_strain(h, left.laminate, hybrid_laminate_free(h, view.member) - growth_of(h, &view), first);
   take_growth_off(h, &view, first);
   foresee_stress(h, row, point.stress, point.was, strain, stress);
   return view.volume / 2 *

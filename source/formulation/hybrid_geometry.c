@@ -14,9 +14,7 @@ static bool sees(const Hybrid *h, int32_t a, int32_t b)
   return family_joins(h->family, a, b);
 }
 
-/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
- *  @return false where it is as flat as no strain can be found in */
-static bool invert(const Hybrid *h, double m[6], double inverse[6])
+bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6])
 {
   const double flat = 1e-6;
   double value[3], vector[9], largest = 0, least = INFINITY;
@@ -45,7 +43,7 @@ static void times(const double a[6], const double v[3], double to[3])
 bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3])
 {
   double inverse[6], square = 0;
-  if (!invert(h, moment, inverse)) return false;
+  if (!hybrid_invert(h, moment, inverse)) return false;
   for (int k = 0; k < 3; ++k) square += xi[k] * xi[k];
   for (int n = 0; n < count; ++n) {
     const double from[3] = {g[n][0], g[n][1], g[n][2]};
@@ -57,60 +55,49 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
   return true;
 }
 
-static double hybrid_young(const Hybrid *h, int64_t place)
-{
-  return material_young(&h->materials[h->material[place / SLICE]]);
-}
-
-/** Share of a bond's volume that the material at one of its ends has: the parts of a bond of two materials stand in
- * series. */
-static double hybrid_softer_share(const Hybrid *h, int64_t place, int64_t other)
-{
-  const double own = hybrid_young(h, place), both = own + hybrid_young(h, other);
-  return both > 0 ? 1 - own / both : 0.5;
-}
-
-/** Weight in the fit of a member of another material than both ends of the bond: strains jump where materials meet, the
- * more the less alike they are (docs/theory.md 5.3). */
-static double hybrid_alike(const Hybrid *h, const int32_t *member, int n)
-{
-  const double own = hybrid_young(h, member[0]), there = hybrid_young(h, member[n]);
-  return own + there > 0 && own == hybrid_young(h, member[1]) ? 2 * fmin(own, there) / (own + there) : 1;
-}
-
-/** Vectors g of the members of a listed row by the bonds that are intact now. @return false: there is none, and the point carries nothing */
-static bool weigh(const Hybrid *h, int64_t number, double (*g)[3])
+/** Finds the vectors g of the members of a listed row by the bonds that are intact now.
+ *  @param[in,out] laminate  of the row, or NULL; found anew
+ *  @return false: there is none, and the point carries nothing */
+static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate)
 {
   const Particles *p = h->particles;
   const int32_t *member = h->member + h->first[number];
   const int count = (int)(h->first[number + 1] - h->first[number]);
+  double *weight = h->tried_weight, (*from)[3] = h->tried_from;
   memset(g, 0, sizeof *g * (size_t)count);
   if (h->volume[number] == 0 || !sees(h, member[0], member[1])) return false;
   double middle[3] = {0}, whole = 0, m[6] = {0}, xi[3];
   for (int n = 0; n < count; ++n) {
-    if (!sees(h, member[n], member[0]) || !sees(h, member[n], member[1])) continue;
-    const double volume = p->volume[member[n]] * hybrid_alike(h, member, n);
-    whole += volume;
+    const bool present = sees(h, member[n], member[0]) && sees(h, member[n], member[1]);
+    weight[n] = present ? p->volume[member[n]] * hybrid_laminate_alike(h, member, n, laminate) : 0;
+    whole += weight[n];
     for (int k = 0; k < 3; ++k) {
-      g[n][k] = p->position[k][member[n]] - p->position[k][member[0]];
-      middle[k] += volume * g[n][k];
+      from[n][k] = p->position[k][member[n]] - p->position[k][member[0]];
+      middle[k] += weight[n] * from[n][k];
     }
   }
   for (int k = 0; k < 3; ++k) {
-    xi[k] = g[1][k];
+    xi[k] = from[1][k];
     middle[k] /= whole;
   }
   for (int n = 0; n < count; ++n) {
-    const bool present = !n || g[n][0] != 0 || g[n][1] != 0 || g[n][2] != 0; /* the others stand elsewhere */
-    const double volume = present ? p->volume[member[n]] * hybrid_alike(h, member, n) : 0;
-    double from[3];
-    for (int k = 0; k < 3; ++k) from[k] = g[n][k] - middle[k];
-    for (int k = 0; k < 6; ++k) m[k] += volume * from[symmetric_row[k]] * from[symmetric_column[k]];
-    for (int k = 0; k < 3; ++k) g[n][k] = volume * from[k];
+    double apart[3];
+    for (int k = 0; k < 3; ++k) apart[k] = from[n][k] - middle[k];
+    for (int k = 0; k < 6; ++k) m[k] += weight[n] * apart[symmetric_row[k]] * apart[symmetric_column[k]];
+    for (int k = 0; k < 3; ++k) g[n][k] = weight[n] * apart[k];
   }
-  if (hybrid_fit(h, count, m, xi, g)) return true;
-  memset(g, 0, sizeof *g * (size_t)count);
-  return false;
+  if (!hybrid_fit(h, count, m, xi, g)) {
+    memset(g, 0, sizeof *g * (size_t)count);
+    return false;
+  }
+  const HybridMembers of = {count, member, weight, (const double(*)[3])from};
+  if (laminate) hybrid_laminate_weigh(h, &of, laminate, g);
+  return true;
+}
+
+static HybridLaminate *laminate_of(Hybrid *h, int64_t number)
+{
+  return h->layer && h->layer[number] >= 0 ? &h->laminate[h->layer[number]] : NULL;
 }
 
 void hybrid_renew(void *formulation, int64_t slice)
@@ -121,7 +108,8 @@ void hybrid_renew(void *formulation, int64_t slice)
       const int64_t number = h->met[n].number;
       const bool to_others =
           is_foreign(h->foreign, h->member[h->first[number] + 1]); /* whose breaks are not told here */
-      if (h->met[n].member < 2 || to_others) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
+      if (h->met[n].member < 2 || to_others)
+        h->idle[number] = !weigh(h, number, h->g + h->first[number], laminate_of(h, number));
     }
   hybrid_groups_renew(h, slice);
 }
@@ -133,7 +121,11 @@ bool hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
   hybrid_view_at(h, at, view);
   if (at->listed < 0) return at->geometry >= 0 && hybrid_group_weigh(h, at, view);
   view->g = (const double(*)[3])h->tried;
-  return weigh(h, at->listed, h->tried);
+  if (view->laminate) {
+    view->tried_laminate = *view->laminate;
+    view->laminate = &view->tried_laminate;
+  }
+  return weigh(h, at->listed, h->tried, view->laminate ? &view->tried_laminate : NULL);
 }
 
 bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane)
@@ -161,7 +153,7 @@ static bool find_shape(const Hybrid *h, int32_t place, double inverse[6])
     for (int c = 0; c < 6; ++c)
       k[c] += bond.weight / bond.length * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
   }
-  return invert(h, k, inverse);
+  return hybrid_invert(h, k, inverse);
 }
 
 typedef struct Neighbours {
@@ -291,7 +283,9 @@ static int create_members(Hybrid *h, Error *error)
   int64_t most = 0;
   for (size_t k = 0; k < rows && !status; ++k)
     if (h->first[k + 1] - h->first[k] > most) most = h->first[k + 1] - h->first[k];
-  if (!status && !(h->tried = memory_zeroed((size_t)most, sizeof *h->tried, "members of bonds", error)))
+  if (!status && (!(h->tried = memory_zeroed((size_t)most, sizeof *h->tried, "members of bonds", error)) ||
+                  !(h->tried_from = memory_zeroed((size_t)most, sizeof *h->tried_from, "members of bonds", error)) ||
+                  !(h->tried_weight = memory_zeroed((size_t)most, sizeof *h->tried_weight, "members of bonds", error))))
     status = BRECCIA_FAILURE;
   free(n.mark);
   free(n.found);
@@ -345,10 +339,10 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   const Bond bond = family_bond(h->family, at->slice, at->slot, at->lane);
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, at->slice, at->slot, at->lane, rows);
-  const double share = is_foreign(h->foreign, bond.neighbour) ? 0.5
-                       : rows[0] == rows[1]                   ? 1
-                       : at->second                           ? hybrid_softer_share(h, bond.neighbour, owner)
-                                                              : hybrid_softer_share(h, owner, bond.neighbour);
+  const bool halves = is_foreign(h->foreign, bond.neighbour) ||
+                      (rows[0] != rows[1] &&
+                       material_is_as_stiff(points_material(h->points, rows[0]), points_material(h->points, rows[1])));
+  const double share = halves ? 0.5 : 1; /* laminates share later */
   double own[3], their[3];
   times(shape[owner][XX] > 0 ? shape[owner] : shape[bond.neighbour], bond.xi, own);
   times(shape[bond.neighbour][XX] > 0 ? shape[bond.neighbour] : shape[owner], bond.xi, their);
@@ -357,6 +351,16 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
     area[k] = share * h->particles->volume[owner] * bond.weight / bond.length * (own[k] + their[k]);
     *volume += area[k] * bond.xi[k] / h->dimensions;
   }
+}
+
+/** Takes the part of a bond's section and volume that the material of a listed row has in its laminate.
+ *  @return false: none */
+static bool take_part(Hybrid *h, int64_t number, const HybridLaminate *laminate)
+{
+  if (!laminate) return true;
+  h->volume[number] *= laminate->fraction;
+  for (int k = 0; k < 3; ++k) h->area[number][k] *= laminate->fraction;
+  return laminate->fraction > 0;
 }
 
 static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
@@ -370,7 +374,10 @@ static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
     h->idle[number] = !(h->family->intact[at.slot] >> at.lane & 1);
     if (h->idle[number]) continue;
     hybrid_section_of(h, shape, &at, h->area[number], &h->volume[number]);
-    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number])) continue;
+    if (hybrid_laminate_create(h, number, error)) return BRECCIA_FAILURE;
+    HybridLaminate *laminate = laminate_of(h, number);
+    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number], laminate) && take_part(h, number, laminate))
+      continue;
     h->idle[number] = 1; /* also where influence ends at the horizon */
     const int64_t owner = at.slice * SLICE + at.lane;
     if (h->volume[number] != 0 &&
@@ -402,6 +409,7 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   if (!status) status = list_rows(h, error);
   if (!status && h->listed) status = create_members(h, error);
   if (!status && h->listed) status = create_meetings(h, error);
+  if (!status && h->listed) status = hybrid_laminate_contacts(h, error);
   for (int32_t n = 0; n < p->count && !status; ++n)
     if (!find_shape(h, p->place_of[n], shape[p->place_of[n]]) && !is_foreign(h->foreign, p->place_of[n]) &&
         !body_outside(h->body, n))
@@ -409,6 +417,8 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   if (!status) status = measure_listed(h, (const HybridShape *)shape, error);
   if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);
   free(shape);
+  free(h->contact);
+  h->contact = NULL;
   h->stripes = parts->stripe_count;
   if (!status) status = hybrid_stripes_create(h, parts->stripe, error);
   if (!status && h->planar) hybrid_planes_choose(h);
@@ -428,6 +438,11 @@ void hybrid_forget(Hybrid *h)
   free(h->met_first);
   free(h->met);
   free(h->tried);
+  free(h->tried_from);
+  free(h->tried_weight);
+  free(h->layer);
+  free(h->laminate);
+  free(h->contact);
   places_free(&h->force);
   places_free(&h->shown);
 }
@@ -442,5 +457,6 @@ size_t hybrid_bytes(const void *formulation)
                                    places * (sizeof *h->met_first + LANES * sizeof *h->shown) +
                                    (size_t)h->met_first[places] * sizeof *h->met
                              : 0;
-  return listed + hybrid_lattices_bytes(h);
+  const size_t laminates = h->layer ? rows * sizeof *h->layer + (size_t)h->laminates * sizeof *h->laminate : 0;
+  return laminates + listed + hybrid_lattices_bytes(h);
 }

@@ -41,12 +41,14 @@ static void view_listed(const Hybrid *h, int64_t number, HybridView *view)
   view->g = (const double(*)[3])(h->g + h->first[number]);
   memcpy(view->area, h->area[number], sizeof view->area);
   view->volume = h->volume[number];
+  view->laminate = hybrid_laminate(h, number);
 }
 
 void hybrid_view_at(const Hybrid *h, const HybridRow *at, HybridView *view)
 {
   view->idle = true;
   view->count = 0;
+  view->laminate = NULL;
   view->volume = 0;
   if (at->listed >= 0) {
     view_listed(h, at->listed, view);

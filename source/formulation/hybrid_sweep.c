@@ -114,6 +114,9 @@ static void deform_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t nu
     hybrid_strain_change(h, at, g, strain);
   else
     hybrid_strain(h, g, strain);
+  const HybridLaminate *laminate = hybrid_laminate(h, number);
+  const bool begins = laminate && !sweep->at; /* free strains do not change in a linearised step */
+  hybrid_laminate_strain(h, laminate, begins ? hybrid_laminate_free(h, h->member + h->first[number]) : 0, strain);
   const bool stays = h->idle[number] && !sweep->at; /* as of broken bonds along lattices */
   for (int k = 0; k < 6; ++k)
     if (!stays && (k != ZZ || !h->points->plane_stress)) sweep->strain[k][i] = strain[k];
@@ -297,10 +300,13 @@ static void keep_listed(const Hybrid *h, int64_t number, const double p[9])
 static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t number)
 {
   double stress[6], held[6], p[9], g[9], at[9];
+  const HybridLaminate *laminate = hybrid_laminate(h, number);
   full_tensor(sweep->stress, i, stress);
+  hybrid_laminate_stress(h, laminate, stress);
   for (int k = 0; k < 9; ++k) g[k] = sweep->carry[k * BATCH + i];
   if (sweep->at) {
     full_tensor(h->points->stress, sweep->row + i, held);
+    hybrid_laminate_stress(h, laminate, held);
     listed_gradient(h, sweep->at, number, at);
   }
   hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
@@ -311,6 +317,7 @@ static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t n
 static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number, int material)
 {
   double g[9], at[9], strain[6], stress[6], held[6], p[9];
+  const HybridLaminate *laminate = hybrid_laminate(h, number);
   Lanes column[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n) {
     const Lanes u = lanes_load(h->shown + LANES * (int64_t)h->member[n]);
@@ -320,12 +327,16 @@ static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number
   if (sweep->at) {
     listed_gradient(h, sweep->at, number, at);
     hybrid_strain(h, at, strain);
+    hybrid_laminate_strain(h, laminate, 0, strain);
     hybrid_hooke_stress(&h->hooke[material], strain, held);
+    hybrid_laminate_stress(h, laminate, held);
     hybrid_strain_change(h, at, g, strain);
   } else {
     hybrid_strain(h, g, strain);
   }
+  hybrid_laminate_strain(h, laminate, 0, strain);
   hybrid_hooke_stress(&h->hooke[material], strain, stress);
+  hybrid_laminate_stress(h, laminate, stress);
   hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
   keep_listed(h, number, p);
 }
@@ -339,11 +350,8 @@ static void respond_slice_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t 
       const int64_t number = listed_at(h, group, lane);
       if (number >= 0) respond_by_hooke(h, sweep, number, h->material[slice]);
     }
-  for (int64_t number = l->single_first[slice]; number < l->single_first[slice + 1]; ++number) {
-    const bool second = l->single[number] < 0; /* of the material of the other end */
-    const int64_t end = h->idle[number] || !second ? slice : h->member[h->first[number] + 1] / SLICE;
-    respond_by_hooke(h, sweep, number, h->material[end]);
-  }
+  for (int64_t number = l->single_first[slice]; number < l->single_first[slice + 1]; ++number)
+    respond_by_hooke(h, sweep, number, l->single_material[number]);
 }
 
 int64_t hybrid_respond(void *formulation, const Sweep *sweep)

@@ -139,29 +139,20 @@ static double layers_shift(double ratio, double horizon)
   return 2.15 * horizon / 3.015 * (1 - 1 / cbrt(ratio));
 }
 
-/** Spacings by which the stiffer of two layers acts thinner along their interface in hybrid bodies, whose bonds of two
- *  materials act in series in all directions: the difference of the mean of both moduli to the harmonic one, in rows of
- *  the stiffer layer, times a share of the horizon that was measured (docs/choosing.md). */
-static double layers_loss(double ratio, double horizon)
-{
-  const double share = 0.235, contrast = (ratio - 1) / (ratio + 1);
-  return share * horizon * contrast * contrast * (1 + 1 / ratio);
-}
-
 static void layers_describe(const Domain *d, const Region *region, const Meeting *of, Text *text)
 {
-  const bool hybrid = !strcmp(region->type->name, "hybrid");
   const double horizon = d->family.horizon / d->body.largest_spacing;
-  text_add(text, "  blocks '%s' and '%s' meet, the first %.3g times softer: in '%s' the %s of them acts up to %.2f ",
+  text_add(text,
+           "  blocks '%s' and '%s' meet, the first %.3g times softer: in '%s' the first of them acts up to %.2f "
+           "spacings thinner across the interface\n",
            d->body.blocks[of->soft]->head.name, d->body.blocks[of->stiff]->head.name, of->ratio, region->type->name,
-           hybrid ? "second" : "first", hybrid ? layers_loss(of->ratio, horizon) : layers_shift(of->ratio, horizon));
-  text_add(text, "spacings thinner %s the interface\n", hybrid ? "along" : "across");
+           layers_shift(of->ratio, horizon));
 }
 
 void plausibility_describe_layers(const breccia_model *model, Text *text)
 {
   const Domain *d = &model->domain;
-  static const char *const shifted[] = {"bond-based", "ordinary", "correspondence", "hybrid"};
+  static const char *const shifted[] = {"bond-based", "ordinary", "correspondence"};
   for (int r = 0; r < d->region_count; ++r) {
     Meeting farthest = {.ratio = least_ratio};
     bool shifts = false;

@@ -226,7 +226,9 @@ def reversed_slip(test):
 
 
 def strength_of_a_joint(test):
-    """Bonds between two materials in uniform strain have the mean stress of both, in any order of the blocks."""
+    """A joint of two materials in series breaks when the traction is its strength, in any order of the blocks: in
+    equilibrium, where the softer material has more of the strain, and in uniform strain, where of all bonds the ones
+    with three quarters of their length in the stiffer material carry most."""
     blocks = [
         (
             "  b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {from: [0, 0], to: [0.5,"
@@ -237,28 +239,36 @@ def strength_of_a_joint(test):
             " 0.4]}}}\n"
         ),
     ]
+    strength, traction = 60, 150  # traction at the end of the ramp
     for soft, stiff in ((1e4, 5e4), (5e4, 1e4)):
+        even = 60 / (0.01 / (0.75 / max(soft, stiff) + 0.25 / min(soft, stiff)))
         for order in (blocks, blocks[::-1]):
-            found = test.run(
-                UNITS
-                + f"materials:\n  m: {{model: elastic, density: 2, Young modulus: {soft}, Poisson ratio: 0}}\n"
-                f"  n: {{model: elastic, density: 6, Young modulus: {stiff}, Poisson ratio: 0}}\nbody:\n"
-                + "".join(order)
-                + "peridynamics: {formulation: hybrid, strain: small, space: plane strain}\nfailure: {criterion:"
-                " critical bond stress, bond tensile strength: 60, near grips: break, no failure within: {of:"
-                f" {{block: {'c' if stiff > soft else 'b'}}}}}}}\nloads: [{{name: pull, on: {{all: yes}}, field:"
-                " {displacement: ['0.01 * x', 0]}, history: {ramp to: 10e-3}}]\nsolve: {explicit: {time step:"
-                " 2e-5, steps: 220}}\n"
-                + PERIOD
-            )
-            when = found["summary"]["first_broken_bond/time"].rows[0][0]
-            test.near(
-                when,
-                60 / (0.5 * (soft + stiff)) / 0.01 * 10e-3,
-                1,
-                4.1e-5,
-                f"time at which the joint of {soft} and {stiff} breaks",
-            )
+            for name, loads, share in (
+                (
+                    "equilibrium",
+                    [("{block: b}", f"{traction / soft} * (x - 0.5 m)"), ("{block: c}", f"{traction / stiff} * (x - 0.5 m)")],
+                    strength / traction,
+                ),
+                ("uniform strain", [("{all: yes}", "0.01 * x")], even),
+            ):
+                found = test.run(
+                    UNITS
+                    + f"materials:\n  m: {{model: elastic, density: 2, Young modulus: {soft}, Poisson ratio: 0}}\n"
+                    f"  n: {{model: elastic, density: 6, Young modulus: {stiff}, Poisson ratio: 0}}\nbody:\n"
+                    + "".join(order)
+                    + "peridynamics: {formulation: hybrid, strain: small, space: plane strain}\nfailure: {criterion:"
+                    f" critical bond stress, bond tensile strength: {strength}, near grips: break, no failure within:"
+                    f" {{of: {{block: {'c' if stiff > soft else 'b'}}}}}}}\nloads:\n"
+                    + "".join(
+                        f"  - {{on: {on}, field: {{displacement: ['{field}', 0]}}, history: {{ramp to: 10e-3}}}}\n"
+                        for on, field in loads
+                    )
+                    + "solve: {explicit: {time step: 2e-5, steps: 220}}\n"
+                    + PERIOD
+                )
+                when = found["summary"]["first_broken_bond/time"].rows[0][0]
+                words = f"time at which the joint of {soft} and {stiff} breaks in {name}"
+                test.near(when, share * 10e-3, 1, 4.1e-5, words)
 
 
 def tolerances_in_all_units(test):
