@@ -139,8 +139,11 @@ typedef struct Judgement {
   double held, limit;
 } Judgement;
 
-/** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect. */
-static Judgement judge(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+/** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect.
+ *  @param[in] ask_all  asks formulations for all that a bond holds, by one thread, as they hide the bond meanwhile;
+ *                      otherwise a bond exceeds its limit if it may */
+static Judgement judge(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
+                       bool ask_all)
 {
   const int64_t place = slice * SLICE + lane;
   const double influence = failure->influence->value(fmin(1, bond->length / f->horizon), bond->length);
@@ -161,12 +164,13 @@ static Judgement judge(const Failure *failure, const Family *f, int64_t slice, i
   if (!held) return (Judgement){both > limit, both, limit};
   const double volumes = f->particles->volume[place] * f->particles->volume[bond->neighbour];
   if (!(both > small * limit)) return (Judgement){0};
+  if (!ask_all) return (Judgement){true, both, limit};
   const double all = held(region->formulation, slice, slot, lane);
   return (Judgement){all > limit * volumes, all, limit * volumes};
 }
 
-/** Marks a slice with a bond beyond its limit, by its formulation's own fast test where it has one. A bond of one region
- *  is judged from its first end only. */
+/** Marks a slice with a bond beyond its limit, by its formulation's own fast test where it has one; by all threads. A bond
+ *  of one region is judged from its first end only. */
 static double suspect(const Failure *failure, const Family *f, int64_t slice, uint8_t *suspects)
 {
   const FailureRegion *own = &failure->regions[failure->region[slice]];
@@ -182,20 +186,20 @@ static double suspect(const Failure *failure, const Family *f, int64_t slice, ui
       const Bond bond = family_bond(f, slice, slot, lane);
       const bool alike = failure->region[bond.neighbour / SLICE] == failure->region[slice];
       if (alike && bond.neighbour < slice * SLICE + lane) continue;
-      *suspects = judge(failure, f, slice, slot, &bond, lane).exceeds;
+      *suspects = judge(failure, f, slice, slot, &bond, lane, false).exceeds;
     }
   return 0;
 }
 
 static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
 {
-  return judge(failure, f, slice, slot, bond, lane).exceeds;
+  return judge(failure, f, slice, slot, bond, lane, true).exceeds;
 }
 
 static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
                       double *limit)
 {
-  const Judgement of = judge(failure, f, slice, slot, bond, lane);
+  const Judgement of = judge(failure, f, slice, slot, bond, lane, true);
   *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
   return of.limit > 0 ? *limit * of.held / of.limit : 0;
 }
