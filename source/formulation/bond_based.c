@@ -284,70 +284,72 @@ static int64_t resist(void *formulation, const Sweep *sweep)
 static bool takes_secants(const void *formulation)
 {
   return ((const BondBased *)formulation)->around != NULL;
-  static bool strength_of_body(const void *formulation)
-  {
-    return ((const BondBased *)formulation)->strength_of_body;
-  }
+}
 
-  static FormerBonds former_bonds(const void *formulation)
-  {
-    const BondBased *b = formulation;
-    return (FormerBonds){.share = 1, .alike = !b->surface};
-  }
+static bool strength_of_body(const void *formulation)
+{
+  return ((const BondBased *)formulation)->strength_of_body;
+}
 
-  static size_t bytes(const void *formulation)
-  {
-    const BondBased *b = formulation;
-    return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
-           (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
-           (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) + bond_lateral_bytes(b) +
-           (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
-  }
+static FormerBonds former_bonds(const void *formulation)
+{
+  const BondBased *b = formulation;
+  return (FormerBonds){.share = 1, .alike = !b->surface};
+}
 
-  const FormulationType formulation_bond_based = {
-      .name = "bond-based",
-      .about = "every bond is a fibre with a uniaxial law of its own; Poisson's ratio is 1/4 (1/3 in plane stress)",
-      .source = "Silling 2000; Silling and Askari 2005",
-      .maturity = "verified against closed forms on lattices",
-      .components = 1,
-      .on_bonds = true,
-      .section = &bond_based_section,
-      .create = create,
-      .destroy = destroy,
-      .renew = renew,
-      .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
-                 {.run = bond_lateral_strains,
-                  .reads = OF_DISPLACEMENTS,
-                  .writes = OF_SHOWN,
-                  .of_neighbours = OF_DISPLACEMENTS},
-                 {.run = bond_stretch,
-                  .reads = OF_DISPLACEMENTS,
-                  .writes = OF_STRAINS,
-                  .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN},
-                 {.run = bond_pull_of_stress, .reads = OF_STRESSES, .writes = OF_STATES},
-                 {.run = resist,
-                  .reads = OF_DISPLACEMENTS,
-                  .writes = OF_FORCES,
-                  .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN,
-                  .of_lower = OF_STATES}},
-      .linearise = bond_linearise,
-      .half_state = half_state,
-      .point_count = bond_point_count,
-      .point = bond_point,
-      .stored_energy = stored_energy,
-      .bond_energy = bond_energy,
-      .energy_room = bond_energy_room,
-      .gradient = gradient,
-      .stress = stress,
-      .characteristic_length = bond_characteristic_length,
-      .crack_length = bond_crack_length,
-      .uniaxial_strength = bond_uniaxial_strength,
-      .uniaxial_crushing = bond_uniaxial_crushing,
-      .strength_of_body = strength_of_body,
-      .critical_stretch = bond_critical_stretch,
-      .shown_young = bond_shown_young,
-      .describe = bond_describe,
-      .former_bonds = former_bonds,
-      .takes_secants = takes_secants,
-      .bytes = bytes,
-  };
+static size_t bytes(const void *formulation)
+{
+  const BondBased *b = formulation;
+  return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
+         (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
+         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) + bond_lateral_bytes(b) +
+         (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
+}
+
+const FormulationType formulation_bond_based = {
+    .name = "bond-based",
+    .about = "every bond is a fibre with a uniaxial law of its own; Poisson's ratio is 1/4 (1/3 in plane stress)",
+    .source = "Silling 2000; Silling and Askari 2005",
+    .maturity = "verified against closed forms on lattices",
+    .components = 1,
+    .on_bonds = true,
+    .section = &bond_based_section,
+    .create = create,
+    .destroy = destroy,
+    .renew = renew,
+    .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+               {.run = bond_lateral_strains,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_SHOWN,
+                .of_neighbours = OF_DISPLACEMENTS},
+               {.run = bond_stretch,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_STRAINS,
+                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN},
+               {.run = bond_pull_of_stress, .reads = OF_STRESSES, .writes = OF_STATES},
+               {.run = resist,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_FORCES,
+                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN,
+                .of_lower = OF_STATES}},
+    .linearise = bond_linearise,
+    .half_state = half_state,
+    .point_count = bond_point_count,
+    .point = bond_point,
+    .stored_energy = stored_energy,
+    .bond_energy = bond_energy,
+    .energy_room = bond_energy_room,
+    .gradient = gradient,
+    .stress = stress,
+    .characteristic_length = bond_characteristic_length,
+    .crack_length = bond_crack_length,
+    .uniaxial_strength = bond_uniaxial_strength,
+    .uniaxial_crushing = bond_uniaxial_crushing,
+    .strength_of_body = strength_of_body,
+    .critical_stretch = bond_critical_stretch,
+    .shown_young = bond_shown_young,
+    .describe = bond_describe,
+    .former_bonds = former_bonds,
+    .takes_secants = takes_secants,
+    .bytes = bytes,
+};
