@@ -8,6 +8,11 @@
  * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families in which a
  * factor has fallen before.
  *
+ * Where control fades with yielding, a point whose law yields and does not soften keeps the smaller of the stiffness left and
+ *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
+ * Slip lines are narrower than families: their motion is one of which the strain sees a part, and the rest would be
+ * resisted by control beside the strength of the law.
+ *
  * Each point has its own factor for all its bonds, so that z stays what is left by the best fit, and forces follow from an energy. A step takes the
  * factors that were committed with the one before: forces are then linear in what they were, and the tangent symmetric. */
 #include "formulation/correspondence.h"
@@ -17,8 +22,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double most_stored = 0.125; /* of the energy with which a law begins to soften, for control */
-static const double roundings = 1e-6;    /* points with all their stiffness but this have lost none */
+static const double most_stored = 0.125;  /* of the energy with which a law begins to soften, for control */
+static const double most_resisted = 0.05; /* of the shear stress of a law that yields, by control */
+static const double roundings = 1e-6;     /* points with all their stiffness but this have lost none */
 
 /** Of a slice. */
 enum { TRIED = 1, SOFTENED = 2, BESIDE = 4 }; /* a factor was below 1 in some trial; is below 1; is so of a neighbour */
@@ -200,12 +206,31 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const do
   return lanes_set(0.5) * sum;
 }
 
+/** Shares of control with which four points whose laws have yielded hold motions that their strain does not see by no
+ * more than `most_resisted` of their shear stress q = sqrt(J_2): f G sqrt(2 w / G) = most_resisted q, where w is what
+ * control would store per volume, so that sqrt(2 w / G) is the shear strain that would store as much.
+ * @param[in] stored  [4] w */
+LANES_INLINE Lanes resisting_share(const Material *m, const Sweep *sweep, int64_t here, Lanes stored)
+{
+  Lanes stress[6], squares = {0};
+  for (int k = 0; k < 6; ++k) stress[k] = lanes_load(sweep->stress[k] + here);
+  const Lanes mean = (stress[XX] + stress[YY] + stress[ZZ]) * lanes_set(1.0 / 3);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes deviator = stress[k] - mean;
+    squares += lanes_set(0.5) * deviator * deviator + stress[k + 3] * stress[k + 3];
+  }
+  const Lanes most = lanes_set(most_resisted * most_resisted) * squares, held = lanes_set(2 * m->shear) * stored;
+  const LaneMask bound = held > most;
+  return lanes_choose(bound, lanes_root(most / lanes_choose(bound, held, lanes_set(1))), lanes_set(1));
+}
+
 BRECCIA_CLONES
 static void fade(const Correspondence *c, const Sweep *sweep)
 {
   const Fading *f = c->fading;
   const Material *m = points_material(c->points, sweep->first * SLICE);
   const bool may = fades_in(c, m) && !c->points->elastic_stage, softens = may && m->softening_energy > 0;
+  const bool yields = c->fades == FADES_WITH_YIELDING;
   const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (f->mark[slice]) set_hold(c, slice, f->next);
@@ -217,9 +242,12 @@ static void fade(const Correspondence *c, const Sweep *sweep)
         if (!(lost[0] | lost[1] | lost[2] | lost[3])) continue;
         f->mark[slice] = TRIED;
       }
-      if (softens && f->mark[slice] & (SOFTENED | BESIDE)) {
+      const bool cracked = softens && f->mark[slice] & (SOFTENED | BESIDE), flows = may && yields && !softens;
+      if (cracked || flows) {
         const Lanes stored = stored_whole(c, place, sweep->carry + here);
-        left *= lanes_choose(stored > most, most / stored, one);
+        const Lanes resisting = flows ? lanes_least(left, resisting_share(m, sweep, here, stored)) : left;
+        left = lanes_choose(left < one, resisting, left);
+        if (cracked) left *= lanes_choose(stored > most, most / stored, one);
       }
       lanes_store(f->found + place, lanes_least(lanes_load(f->next + place), left));
     }

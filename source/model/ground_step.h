@@ -2,14 +2,15 @@
 #ifndef BRECCIA_MODEL_GROUND_STEP_H
 #define BRECCIA_MODEL_GROUND_STEP_H
 
-#include "body/body.h"
-#include "loading/load.h"
+#include "domain/domain.h"
 
 /** Returns by how many spacings the highest column of particles along gravity ends above the lowest one; 0: gravity
  * does not act, or memory is out. */
 double ground_step_spacings(const Body *body, const Loading *loading);
 
-/** Returns an estimate of the share by which the factor of safety of such a step comes out too high; at most 0.35. */
-double ground_step_excess(double spacings);
+/** Returns an estimate of the share by which the factor of safety of such a step comes out too high: at most 0.35, or
+ * 0.1 where control of zero-energy modes fades with yielding.
+ *  @param[in] spacings  of the step */
+double ground_step_excess(const Domain *domain, double spacings);
 
 #endif

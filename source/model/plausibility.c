@@ -308,6 +308,24 @@ double plausibility_wave_speed(const breccia_model *model)
   return wave_speed(model, main_material(model));
 }
 
+/** Adds what a cone does that leaves out its dilation or its tension cut-off: both then make ground too strong. */
+static void describe_cone(const breccia_model *model, const Material *m, Text *text)
+{
+  const double degree = acos(-1) / 180, friction = plausibility_parameter(model, m, "friction angle"),
+               slope = plausibility_parameter(model, m, "cone slope");
+  const double tip = isnan(friction) ? plausibility_parameter(model, m, "cone strength") / (3 * slope)
+                                     : plausibility_parameter(model, m, "cohesion") / tan(friction * degree);
+  if (strcmp(m->law->name, "drucker-prager") != 0 || !(friction > 0 || slope > 0)) return;
+  if (isnan(plausibility_parameter(model, m, "dilation angle")) &&
+      isnan(plausibility_parameter(model, m, "dilation slope")))
+    text_add(text, ", dilates by its friction (without 'dilation %s': confined ground bears too much)",
+             isnan(friction) ? "slope" : "angle");
+  if (!isnan(plausibility_parameter(model, m, "tension cut-off"))) return;
+  text_add(text, ", bears a mean tension of ");
+  quantity_describe(plausibility_in_si(model, "stress", tip), "Pa", text);
+  text_add(text, " (without 'tension cut-off')");
+}
+
 static void describe_material(const breccia_model *model, int k, Text *text)
 {
   const Domain *d = &model->domain;
@@ -338,6 +356,7 @@ static void describe_material(const breccia_model *model, int k, Text *text)
     text_add(text, ")");
   }
   if (model_never_crushes(model, k)) text_add(text, ", no limit in compression");
+  describe_cone(model, m, text);
   text_add(text, "\n");
 }
 
@@ -612,6 +631,20 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_damping(model);
 }
 
+/** Returns what brings factors of safety nearer to limit analysis than the formulation of a deck, as further words. */
+static const char *ground_step_remedy(const breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const Region *region = &d->regions[0];
+  if (strcmp(region->type->name, "correspondence") != 0)
+    return ", or take 'formulation: correspondence' with 'influence: conical' and 'zero-energy control: {silling: 0.2, "
+           "fades: yielding}', whose families resist slip lines by their strength alone";
+  if (correspondence_control_lasts(region->formulation, main_material(model)))
+    return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical'";
+  if (strcmp(model->spec->peridynamics->influence, "constant") != 0) return "";
+  return "; with 'influence: constant' it may come out too low by as much: take 'conical'";
+}
+
 /** Adds how far a factor of safety comes out too high, where strengths are divided. */
 static void describe_step(const breccia_model *model, Text *text)
 {
@@ -621,8 +654,8 @@ static void describe_step(const breccia_model *model, Text *text)
   if (step > 0)
     text_add(text,
              "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "
-             "out some %.0f %% too high; halve the spacing and compare\n",
-             step, 100 * ground_step_excess(step));
+             "out some %.0f %% too high; halve the spacing and compare%s\n",
+             step, 100 * ground_step_excess(&model->domain, step), ground_step_remedy(model));
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)

@@ -82,7 +82,7 @@ void run_add_measures(const breccia_model *model, Text *text)
   text_add(text, "  \"measures\": {\"displacement\": %.10g", largest_displacement(d->particles));
   run_add_measure(text, "strength reduction", loading_strength_reduction(s->loading, s->clock.time));
   run_add_measure(text, "step", step);
-  run_add_measure(text, "excess", step > 0 ? ground_step_excess(step) : 0);
+  run_add_measure(text, "excess", step > 0 ? ground_step_excess(d, step) : 0);
   run_add_measure(text, "size", longest_side(&d->body));
   run_add_measure(text, "plastic", all > 0 ? spent / all : 0);
   run_add_measure(text, "control", yielded.stored > 0 ? yielded.held / yielded.stored : 0);

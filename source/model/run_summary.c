@@ -399,7 +399,7 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
   const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
   if (step > 0)
     text_add(t, "at %.0f spacings across the height of the ground's step the factor may be some %.0f %% too high\n",
-             step, 100 * ground_step_excess(step));
+             step, 100 * ground_step_excess(&model->domain, step));
 }
 
 /** Energy of strains that are roundings: what is less says nothing. */

@@ -279,7 +279,8 @@ static double pushed_footing(const char *fades, double strength, double *before,
       "materials: {m: {model: j2, density: 2, Young modulus: 1000, Poisson ratio: 0.45, yield stress: %g}}\n"
       "body: {b: {material: m, lattice: square, spacing: 0.2, thickness: 1, shape: {box: {from: [0, 0], to: [4, "
       "2]}}}}\n"
-      "peridynamics: {space: plane strain, zero-energy control: {silling: 0.2%s}}\n"
+      "peridynamics: {space: plane strain, horizon: 2.015 spacings, influence: conical, zero-energy control: "
+      "{silling: 0.2%s}}\n"
       "loads:\n"
       "  - {on: {face: x-}, support: {held: across}}\n"
       "  - {on: {face: x+}, support: {held: across}}\n"
@@ -324,9 +325,45 @@ static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
   pushed_footing("", 100, &elastic, &elastic_held); /* nothing has yielded, whatever control holds at the edge */
   assert_true(elastic_held == 0);
   assert_true(limit / before < 1.005);
-  assert_true(limit > 5.14 &&
-              limit < 1.6 * 5.14 * 1.1); /* of ten particles, which clay feels as eleven and a horizon */
-  assert_true(kept > 1.25 * limit && kept / kept_before > 1.04);
+  assert_near(limit, 5.14, 0.1 * 5.14); /* ten particles across the width, which clay feels as eleven */
+  assert_true(kept > 1.25 * limit && kept / kept_before > 1.02);
+}
+
+/** A vertical cut in clay, eight spacings high: gamma H / s_u = 3.776 (bounds of 3.7752 and 3.7776:
+ * Kammoun et al. 2010, Int. J. Numer. Anal. Meth. Geomech., doi 10.1002/nag.887).
+ *  @param[in] load  share of that weight
+ *  @return true if the cut stands under it */
+static bool cut_stands(double load)
+{
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {clay: {model: j2, density: 1, Young modulus: 1000, Poisson ratio: 0.45, yield stress: "
+      "\"${sqrt(3)}\"}}\n"
+      "body: {g: {material: clay, lattice: square, spacing: 0.125, thickness: 1, shape: {difference: [{box: {from: [0, "
+      "0], to: [3, 1.5]}}, {box: {from: [1.5, 0.5], to: [3, 1.5]}}]}}}\n"
+      "peridynamics: {space: plane strain, horizon: 2.015 spacings, influence: conical, zero-energy control: {silling: "
+      "0.2, fades: yielding}}\n"
+      "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: x+}, support: {held: across}}, {on: {face: y-}, "
+      "support: {held: all}}, {gravity: [0, %g], history: {table: [[0, 0], [0.1, 0.7], [1, 1]]}}]\n"
+      "solve: {static: {increments: 10, smallest increment: 0.3}}\n",
+      -3.776 * load);
+  breccia_error *error = breccia_error_create();
+  int status = 0;
+  while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
+  if (status && !strstr(breccia_error_text(error), "no equilibrium")) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
+  return status == 0;
+}
+
+/** Slip lines are narrower than families, which see a part of their motion as strain: control does not hold the rest. A
+ * cut stood under 1.15 of its limit load where control faded with the stiffness of laws alone. */
+static void vertical_cuts_fail_at_their_limit_load(void **state)
+{
+  (void)state;
+  if (under_sanitizers()) skip(); /* the slope walks the same code */
+  assert_true(cut_stands(0.95));
+  assert_false(cut_stands(1.09));
 }
 
 /** A coarse slope near its limit (examples/slope): whatever fades in an increment leaves a thousandth of the forces out of balance, or the body is
@@ -336,7 +373,7 @@ static void slopes_stand_with_control_as_it_is(void **state)
   (void)state;
   breccia_model *m = model_of(
       "units: {length: m, force: kN, time: s}\n"
-      "variables: {factor: 1.6}\n"
+      "variables: {factor: 1.3}\n"
       "materials: {soil: {model: mohr-coulomb, density: 2 t/m3, Young modulus: 100 MPa, Poisson ratio: 0.3, cohesion: "
       "\"${10 kPa/factor}\", friction angle: \"${atan(tan(20 deg)/factor)}\", dilation angle: 0, tensile strength: "
       "27.47 kPa}}\n"
@@ -518,6 +555,7 @@ int main(void)
       cmocka_unit_test(control_that_cannot_fade_near_by_fades_to_the_next_state_of_rest),
       cmocka_unit_test(increments_out_of_balance_are_given_back),
       cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),
+      cmocka_unit_test(vertical_cuts_fail_at_their_limit_load),
       cmocka_unit_test(slopes_stand_with_control_as_it_is),
       cmocka_unit_test(nothing_fades_before_the_law_softens),
       cmocka_unit_test(forces_of_a_half_torn_bar_are_those_of_its_operator),

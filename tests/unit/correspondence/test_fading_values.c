@@ -85,6 +85,16 @@ static double stored_of(const breccia_model *m, int32_t place, const double whol
   return sum;
 }
 
+/** Root of the second invariant of the stress of a particle. */
+static double shear_stress(const breccia_model *m, int32_t place)
+{
+  double squares = 0, mean = 0, s[6];
+  for (int k = 0; k < 6; ++k) s[k] = m->domain.stress[k][place];
+  for (int k = 0; k < 3; ++k) mean += s[k] / 3;
+  for (int k = 0; k < 3; ++k) squares += 0.5 * pow(s[k] - mean, 2) + s[k + 3] * s[k + 3];
+  return sqrt(squares);
+}
+
 /** All strains alike, so that control stores nothing: it keeps what the law keeps, the least so far. Then particles are moved at random: it stores no more than an eighth of
  *  the energy with which the law begins to soften. */
 static void control_keeps_what_the_law_keeps_and_stores_no_more_than_its_share(void **state)
@@ -136,6 +146,8 @@ static void control_keeps_what_the_law_keeps_and_stores_no_more_than_its_share(v
       if (laws[n].softening > 0) {
         left *= fmin(1, most / stored);
         stored > most ? ++bounded : ++unbounded;
+      } else if (left < 1) {
+        left = fmin(left, 0.05 * shear_stress(m, place) / sqrt(2 * m->domain.materials[0].shear * stored));
       }
       kept[place] = fmin(kept[place], left);
     }
