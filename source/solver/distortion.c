@@ -30,19 +30,17 @@ int64_t distortion_inverted(const Domain *d, int32_t *first)
   return count;
 }
 
-/** Returns true if the law of a particle may carry next to nothing, so that nothing hinders the particle from being
- * turned inside out. */
+/** Returns true if the law of a particle, or the laws of its bonds in the mean, have lost so much of their stiffness
+ * that next to nothing hinders the particle from being turned inside out. Laws that flow keep theirs. */
 static bool distortion_may_be_spent(const Domain *d, int32_t place)
 {
-  const double most = 0.5; /* damage */
+  const double damage = 0.5, mean_damage = 0.1; /* of a point, of all bonds of a family */
   const Points *points = &domain_region(d, place)->points;
+  const Material *m = &d->materials[d->material[place / SLICE]];
+  const double most = points_on_particles(points) ? damage : mean_damage;
   if (d->gave_up && d->gave_up[place]) return true;
-  if (!points->components || !points->history_size) return false;
-  if (!points_on_particles(points)) return true;
-  const Material *m = points_material(points, place);
-  const double *history = points_history(points, place);
   for (int k = 0; k < m->history_values && m->law->history_is_damage; ++k)
-    if (m->law->history_is_damage(m->constants, k) && history[k] > most) return true;
+    if (m->law->history_is_damage(m->constants, k) && domain_history(d, place, k) > most) return true;
   return false;
 }
 
@@ -72,7 +70,7 @@ static double distortion_size(const Domain *d)
   return size;
 }
 
-int distortion_watch(const Domain *d, const Clock *clock, Error *error)
+int distortion_watch(const Domain *d, const Clock *clock, bool rests, const char *loads, Error *error)
 {
   const Particles *p = d->particles;
   const double apart = distortion_apart(d), size = distortion_size(d);
@@ -80,16 +78,20 @@ int distortion_watch(const Domain *d, const Clock *clock, Error *error)
     return error_add(
         error, BRECCIA_FAILURE,
         "step %lld (time %g %s): particles have moved apart by %.3g, %.3g sizes of the body, and more than "
-        "%g are taken for a mistake; look at motions, loads and their units",
-        (long long)clock->step, clock->time, clock->time_unit, apart, apart / size, most_apart);
+        "%g are taken for a mistake; look at motions, loads and their units%s",
+        (long long)clock->step, clock->time, clock->time_unit, apart, apart / size, most_apart, loads);
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (!distortion_is_inverted(d, n) || distortion_may_be_spent(d, i)) continue;
     return error_add(error, BRECCIA_FAILURE,
                      "step %lld (time %g %s): particle %d at [%.4g, %.4g, %.4g] is turned inside out (det F = %.3g), "
-                     "and no body can be deformed so; look at motions, loads and their units, or take smaller steps",
+                     "and no body can be deformed so; %s%s",
                      (long long)clock->step, clock->time, clock->time_unit, p->number[i], p->position[0][i],
-                     p->position[1][i], p->position[2][i], distortion_determinant(d, i));
+                     p->position[1][i], p->position[2][i], distortion_determinant(d, i),
+                     rests ? "the body has failed before: take smaller 'increments' to find the load that it bears, or "
+                             "look at motions, loads and their units"
+                           : "look at motions, loads and their units, or take smaller steps",
+                     loads);
   }
   return BRECCIA_OK;
 }

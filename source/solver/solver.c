@@ -406,11 +406,43 @@ static int tell_trap(const Trap *trap, int64_t step, double time, const char *un
   return status;
 }
 
-/** Returns true at the ends of stages and now and then before: looking takes as long as evaluating forces. */
+/** Returns true after increments at rest, at the ends of stages, and now and then before: looking takes as long as a
+ * few evaluations of forces. */
 static bool solver_looks_at_distortion(const Solver *s)
 {
-  const int64_t every = s->type->few_steps ? 10 : 100;
+  const int64_t every = s->type->rests ? 1 : s->type->few_steps ? 10 : 100;
   return s->clock.ended || s->clock.step % every == 0;
+}
+
+/** Adds what the loads and prescribed motions that act prescribe now, each with its line in the deck. */
+static void solver_tell_loads(const Solver *s, Text *text)
+{
+  enum { FEW = 5 };
+  int told = 0;
+  for (int k = 0; k < s->loading->count && told < FEW; ++k) {
+    const Load *load = &s->loading->loads[k];
+    const char *dimension, *kind = load_kind(load->spec, &dimension);
+    const double factor = load_factor(load, s->clock.time), magnitude = load_magnitude(load->spec);
+    char unit[64];
+    if (!load_acts(s->loading, load) || magnitude == 0) continue;
+    units_name(s->reader->units, dimension_find(dimension), unit, sizeof unit);
+    text_add(text, "%s%s (line %d) ", told++ ? ", " : "; loads: ", kind, load->spec->head.node->line);
+    if (load->type == &strength_reduction_load)
+      text_add(text, "at %.6g", loading_strength_reduction(s->loading, s->clock.time));
+    else
+      text_add(text, "at %.6g%s%s", load->type->timeless ? magnitude : factor * magnitude, *unit ? " " : "", unit);
+  }
+}
+
+/** Fails if the body is deformed as no body can be, with the loads under which it is. */
+static int solver_watch_distortion(Solver *s, Error *error)
+{
+  Text loads = {0};
+  solver_tell_loads(s, &loads);
+  const int status = distortion_watch(s->domain, &s->clock, s->type->rests, text_words(&loads), error);
+  text_free(&loads);
+  if (status) ledger_give_up(&s->ledger);
+  return status;
 }
 
 int solver_advance(Solver *s, Text *warning, Error *error)
@@ -432,8 +464,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   if (failed) return failed;
   s->ledger.trapped = trapped;
   int status = trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, s->reader->units, error);
-  if (!status && solver_looks_at_distortion(s) && (status = distortion_watch(s->domain, &s->clock, error)))
-    ledger_give_up(&s->ledger);
+  if (!status && solver_looks_at_distortion(s)) status = solver_watch_distortion(s, error);
   if (!status) resultants_note(s);
   return status;
 }
