@@ -174,11 +174,27 @@ static int try_samples(Search *s, double from, double to, breccia_error *error)
   return status;
 }
 
+/** Looks closer where the body bears all loads so far, but displacement grows faster with the load than at first: over a
+ * wide range a jump of it is not seen. @return status */
+static int look_for_jumps(Search *s, double sign, breccia_error *error)
+{
+  double bears = 0, fails = INFINITY, low, high;
+  int status = BRECCIA_OK;
+  for (failure_bracket(s, &bears, &fails); !status && isinf(fails) && s->count + s->seeds <= MOST_TRIALS;
+       failure_bracket(s, &bears, &fails)) {
+    if (!failure_steepest(s, &low, &high) || high - low <= s->within * high) break;
+    const double middle = sign * (low + high) / 2;
+    status = try_loads(s, &middle, 1, error);
+  }
+  return status;
+}
+
 static int search(Search *s, double from, double to, breccia_error *error)
 {
   double bears = 0, fails = INFINITY;
   const double sign = to < 0 ? -1 : 1;
   int status = try_loads(s, (const double[]){from, to}, 2, error);
+  if (!status) status = look_for_jumps(s, sign, error);
   failure_bracket(s, &bears, &fails);
   if (!status) status = check_ends(s, from, to, fails);
   while (!status && fails - bears > s->within * fails && s->count + 2 * s->seeds <= MOST_TRIALS) {

@@ -146,6 +146,21 @@ void failure_compare(Search *s)
   }
 }
 
+bool failure_steepest(const Search *s, double *low, double *high)
+{
+  const double faster = 1.05;
+  double below = 0, most = faster;
+  for (int k = 0; k < s->count; ++k) {
+    const double here = fabs(s->trials[k].load);
+    if (k && s->trials[k - 1].load != s->trials[k].load) below = fabs(s->trials[k - 1].load);
+    if (!(s->trials[k].rate > most) || s->trials[k].verdict != BEARS) continue;
+    most = s->trials[k].rate;
+    *low = below;
+    *high = here;
+  }
+  return most > faster;
+}
+
 double failure_share(const Search *s, double load)
 {
   int all = 0, bad = 0;

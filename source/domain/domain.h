@@ -309,6 +309,9 @@ void domain_commit_points(Domain *domain);
 int domain_take_loads(Domain *domain, Loading *loading, const DeckReader *reader);
 /** Refuses a strength reduction that no law of the body takes, or one of them refuses. */
 int domain_check_strength(const Domain *domain, const Loading *loading, const DeckReader *reader);
+/** Refuses a strength reduction whose factor is not above 0 at some time that it acts.
+ *  @param[in] time  for which it acts */
+int domain_check_reduction(const Load *load, double time, const DeckReader *reader);
 /** Divides strengths as loads say at a time, by one thread; domain_tell_time does it. */
 void domain_tell_strength(Domain *domain, double time);
 /** Strains that loads say at a time, by one thread; domain_tell_time does it. */

@@ -93,16 +93,58 @@ static double farther(double peak, double factor)
   return fabs(factor) > fabs(peak) ? factor : peak;
 }
 
-double history_peak(const History *h, double time)
+/** Calls for factors from time 0 up to a time, at its parts and corners. */
+static void each_factor(const History *h, double time, void (*one)(void *context, double factor), void *context)
 {
   enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
+  double corner = 0;
+  for (int k = 0; k <= SAMPLES; ++k) one(context, history_factor(h, time * k / SAMPLES));
+  for (int k = 0; k < MOST_CORNERS && (corner = type_of(h)->corner(h, corner)) < time; ++k)
+    one(context, history_factor(h, corner));
+}
+
+static void take_farther(void *peak, double factor)
+{
+  *(double *)peak = farther(*(double *)peak, factor);
+}
+
+double history_peak(const History *h, double time)
+{
+  double peak = 0;
   if (!type_of(h)) return 1;
   if (history_is_controlled(h)) return h->most;
-  double peak = 0, corner = 0;
-  for (int k = 0; k <= SAMPLES; ++k) peak = farther(peak, history_factor(h, time * k / SAMPLES));
-  for (int k = 0; k < MOST_CORNERS && (corner = type_of(h)->corner(h, corner)) < time; ++k)
-    peak = farther(peak, history_factor(h, corner));
+  each_factor(h, time, take_farther, &peak);
   return peak;
+}
+
+typedef struct Least {
+  double change, value, factor;
+} Least;
+
+static void take_less(void *context, double factor)
+{
+  Least *least = context;
+  const double value = 1 + least->change * factor;
+  if (!(value < least->value)) return;
+  least->value = value;
+  least->factor = factor;
+}
+
+double history_least(const History *h, double change, double time, double *factor)
+{
+  const double rises = 10; /* of a history that acts for a time that is not known */
+  Least least = {.change = change, .value = INFINITY};
+  if (type_of(h))
+    each_factor(h, isfinite(time) ? time : rises * history_rise(h), take_less, &least);
+  else
+    take_less(&least, 1);
+  *factor = least.factor;
+  return least.value;
+}
+
+double history_corner(const History *history, double time)
+{
+  return type_of(history) ? type_of(history)->corner(history, time) : INFINITY;
 }
 
 double history_rise(const History *history)

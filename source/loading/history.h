@@ -82,6 +82,13 @@ bool history_is_controlled(const History *history);
 /** The factor that is farthest from zero from time 0 up to a time. */
 double history_peak(const History *history, double time);
 
+/** The smallest value of `1 + change * factor` from time 0 up to a time.
+ *  @param[out] factor  the factor there */
+double history_least(const History *history, double change, double time, double *factor);
+
+/** The first time after another up to which its factor is smooth; INFINITY: there is none. */
+double history_corner(const History *history, double time);
+
 /** Time that it takes to its largest value; 0: it is there at once. */
 double history_rise(const History *history);
 

@@ -6,6 +6,7 @@
 #include "deck/resolve.h"
 #include "loading/support.h"
 #include "model/plausibility.h"
+#include "model/plausibility_parts.h"
 #include "model/sized.h"
 #include "solver/aside.h"
 #include <math.h>
@@ -236,6 +237,17 @@ static bool has_initial_strains(const DeckSpec *spec)
   return has;
 }
 
+/** Refuses strength reductions that come to nothing while they act. */
+static int check_reductions(breccia_model *model)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; !status && k < model->loading.count; ++k) {
+    const Load *load = &model->loading.loads[k];
+    status = domain_check_reduction(load, plausibility_time_of_load(model, load), &model->reader);
+  }
+  return status;
+}
+
 static int build(breccia_model *model, const breccia_options *options, Error *error)
 {
   if (looks_like_test(model->document->root))
@@ -299,6 +311,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
   status = solver_create(&model->solver, &model->warnings, error);
   domain_leave_tensors(&model->domain, false);
   if (!status) status = model_make_compressions(model, error);
+  if (!status) status = check_reductions(model);
   if (!status) status = model_make_schedule(model, true, error);
   for (int p = 0; !status && p < spec->pictures.count; ++p) {
     const PictureSpec *picture = spec->pictures.items[p];

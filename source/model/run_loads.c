@@ -146,35 +146,53 @@ static void run_loads_tell_resultant(const breccia_model *model, const Load *loa
   text_add(t, "\n");
 }
 
-/** True if some stage up to the one under way has many short steps, not all of which are looked at. */
+/** True if some stage up to the one under way has short steps, of which not all are looked at. */
 static bool run_loads_have_gaps(const Solver *s)
 {
   bool gaps = false;
   for (int64_t k = 0; k <= s->clock.stage; ++k) gaps |= !solver_step_was_long(s, (int64_t)s->records[k].last_step);
-  return gaps;
+  return gaps && resultants_interval(s) > 1;
 }
 
-void run_tell_loads(const breccia_model *model, Text *t)
+/** True if a load is a spring between two parts of the body, on which its forces sum to nothing. */
+static bool run_loads_is_between(const Load *load)
+{
+  return load->type->exerts && load->other.count > 0;
+}
+
+/** Tells resultants of loads.
+ *  @param[in] between  of springs between two parts of the body, or of all others
+ *  @return the number of loads that are not told */
+static int run_loads_tell_resultants(const breccia_model *model, const Resultant *resultants, bool between, Text *t)
 {
   enum { FEW = 12 }; /* of more loads only those with names */
-  const int count = model->loading.count;
   const Load *loads = model->loading.loads;
-  Resultant *resultants = run_loads_resultants(model);
+  const char *gaps = run_loads_have_gaps(&model->solver) ? " (of explicit steps every tenth)" : "";
   int told = 0, quiet = 0;
-  for (int k = 0; k < count; ++k)
-    if (loads[k].spec->name) run_loads_tell(model, &loads[k], t);
-  for (int k = 0; k < count && resultants; ++k) {
+  for (int k = 0; k < model->loading.count; ++k) {
     const Resultant *r = &resultants[k];
-    if (!r->exerts || loads[k].first > model->solver.clock.stage) continue;
-    if (count > FEW && !loads[k].spec->name) {
+    if (!r->exerts || loads[k].first > model->solver.clock.stage || run_loads_is_between(&loads[k]) != between)
+      continue;
+    if (model->loading.count > FEW && !loads[k].spec->name) {
       ++quiet;
       continue;
     }
     if (!told++)
-      text_add(t, "force in all on the body, the largest%s and at the end:\n",
-               run_loads_have_gaps(&model->solver) ? " (of explicit steps every tenth)" : "");
+      text_add(t, "force in all on %s, the largest%s and at the end:\n",
+               between ? "the first end of springs between two parts of the body" : "the body", gaps);
     run_loads_tell_resultant(model, &loads[k], r, t);
   }
+  return quiet;
+}
+
+void run_tell_loads(const breccia_model *model, Text *t)
+{
+  Resultant *resultants = run_loads_resultants(model);
+  int quiet = 0;
+  for (int k = 0; k < model->loading.count; ++k)
+    if (model->loading.loads[k].spec->name) run_loads_tell(model, &model->loading.loads[k], t);
+  for (int between = 0; between < 2 && resultants; ++between)
+    quiet += run_loads_tell_resultants(model, resultants, between, t);
   if (quiet) text_add(t, "  %d loads without names: summary.json tells each\n", quiet);
   free(resultants);
 }

@@ -263,6 +263,11 @@ static void add_row_of_each(const Constraint *c, int64_t n, void *context)
   for (int k = 0; k < 3; ++k) each->force[c->load - s->loading->loads][k] += along * c->direction[k];
 }
 
+bool reactions_of_each_ask_bonds(const Loading *loading)
+{
+  return several_mirror(loading);
+}
+
 void reactions_of_each(const Reactions *r, const Solver *solver, double (*force)[3])
 {
   const Unknowns u = unknowns_of(solver->domain, solver->loading);

@@ -29,6 +29,9 @@ void reactions_destroy(Reactions *reactions);
 Wrench reactions_sum(const Reactions *reactions, const Solver *solver, const uint8_t *on, const char *load,
                      const double *about);
 
+/** Returns true if reactions_of_each sums forces of bonds, which takes longer than a step: several supports mirror. */
+bool reactions_of_each_ask_bonds(const Loading *loading);
+
 /** Finds what the motions of each load exert in the state held, as reactions_sum does.
  *  @param[out] force  [loads]; 0 of loads that prescribe no motion or do not act */
 void reactions_of_each(const Reactions *reactions, const Solver *solver, double (*force)[3]);

@@ -90,9 +90,14 @@ static bool resultants_is_larger(const double now[3], const double largest[3])
   return resultants_size(now) > (1 + roundoff) * resultants_size(largest);
 }
 
+int64_t resultants_interval(const Solver *s)
+{
+  return reactions_of_each_ask_bonds(s->loading) ? 10 : 1;
+}
+
 void resultants_note(Solver *s)
 {
-  const int64_t every = 10; /* explicit steps between samples, to limit the cost: shorter peaks can be missed */
+  const int64_t every = resultants_interval(s);
   Resultants *r = s->resultants;
   if (!r || (!s->type->few_steps && !s->clock.ended && s->clock.step % every)) return;
   resultants_of_motions(s, r->now);

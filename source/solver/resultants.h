@@ -2,8 +2,9 @@
  * has exerted so far.
  * What a load of forces exerts is its factor times one vector, so that its largest resultant follows from its
  * history. What supports, prescribed motions, springs and dashpots exert depends on the body: the largest is kept,
- * of the end of every increment and implicit step, and of every tenth explicit step and the last of a stage. It
- * changes with such steps only, and is part of the state, so that a restart ends in the same numbers. */
+ * of the end of every step, or of every tenth explicit step and the last of a stage where several supports mirror:
+ * resultants of these are sums over bonds, which take longer than a step. The largest changes with such steps only, and
+ * is part of the state, so that a restart ends in the same numbers. */
 #ifndef BRECCIA_SOLVER_RESULTANTS_H
 #define BRECCIA_SOLVER_RESULTANTS_H
 
@@ -19,6 +20,10 @@ typedef struct Resultant {
 /** Makes room, without memory of its own before the first step. Destroy in any case. */
 int resultants_create(Solver *solver, Error *error);
 void resultants_destroy(Solver *solver);
+
+/** Returns the number of explicit steps from one whose resultants are looked at to the next: peaks between can be
+ * missed. */
+int64_t resultants_interval(const Solver *solver);
 
 /** After a step that has come out well: keeps resultants larger than those so far. */
 void resultants_note(Solver *solver);

@@ -68,6 +68,12 @@ grep -q 'cannot be written' errors || fail "a full disk: $(cat out errors)"
 equal "a bar that does not fail: status" $? 2
 grep -q 'the body does not fail under 200 kN; give a larger TO' errors || fail "a bar that does not fail: $(cat out errors)"
 grep -q 'was done' out && fail "cases without space for their files count as done: $(cat out)"
+# ---- displacement that jumps at 100 kN and goes on as before: from 50 to 400 kN it grows by 1.3 times as fast only ----
+sed 's/force: \["${pull}"/force: ["${pull + 100 * min(1 kN, max(0 kN, pull - 100 kN))}"/' elastic.yaml > jump.yaml
+sed -i 's/1 mm, area/10 mm, area/; s/\[3000, 1\]/[30, 1]/' jump.yaml
+"$breccia" failure jump.yaml --load 'variables.pull=50 kN:400 kN' --within 0.02 --quiet > out 2> errors
+equal "a bar that jumps: status" $? 0
+bracket out | awk '{exit !($1 > 90 && $1 <= 101 && $2 >= 100 && $2 < 110)}' || fail "a bar that jumps: $(cat out errors)"
 # What is wrong is said, with status 2.
 # ---- a body that is slower than its loading: what counts as failed and still came to rest is told ----
 cat > slow.yaml <<'DECK'

@@ -145,7 +145,7 @@ stage 'slow': steps 0 to 4, time 0 to 1 s
 stage 'fast': steps 4 to 44, time 1 to $(printf %.6g "$end") s
 load 'pull': traction, peak 1 kPa
 load 'more': body force, peak 1 kN/m3
-force in all on the body, the largest (of explicit steps every tenth) and at the end:
+force in all on the body, the largest and at the end:
   load 'pull': [0.16, 0, 0] kN, [0.16, 0, 0] kN
   load 'more': [0, -0.024, 0] kN, [0, -0.024, 0] kN
   staged/solution.txt
@@ -474,6 +474,20 @@ near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
 near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
 contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0], "cause": "limit", "value": 0.001, "limit": 0.001, "unit": ""}'
 grep -q "cannot crush" out && fail "what was never pressed is told: $(cat out)"
+# ---- a cone without dilation and tension cut-off in the deck: c cot(phi) of mean tension, 10 kPa / tan(30 deg) ----
+cat > cone.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, cohesion: 10, friction angle: 30 deg}}
+body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 6]}}}}
+peridynamics: {formulation: correspondence, space: plane strain}
+loads: [{on: {face: y-}, support: {held: all}}, {gravity: [0, -1]}]
+solve: {static: {increments: 1}}
+Y
+"$breccia" check cone.yaml > out 2> errors || fail "cone: $(cat errors)"
+contains "cone" "$(cat out)" ", dilates by its friction (without 'dilation angle': confined ground bears too much), bears a mean tension of 17.3 kPa (without 'tension cut-off')"
+sed 's/friction angle: 30 deg/&, dilation angle: 0, tension cut-off: 1/' cone.yaml > given.yaml
+"$breccia" check given.yaml > out 2> errors || fail "cone: $(cat errors)"
+grep -qE "dilates|bears a mean" out && fail "cone: what the deck gives is told: $(cat out)"
 # ---- a bar of four bonds that is pressed by 0.04 mm: E times 0.001, and nothing crushes it ----
 sed -e 's/elastic-1d/exponential-softening, tensile strength: 3 MPa, fracture energy: 100 N\/m/; s/particles: .2, 1./particles: [5, 1]/; /^failure/d' \
   -e 's/velocity: .0.1, free./displacement: [-0.04, free], history: {table: [[0, 0], [0.5, 1], [1, 0.5]]}/; s/^solve.*/solve: {static: {increments: 4}}/' \

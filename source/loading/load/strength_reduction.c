@@ -13,12 +13,6 @@ static int create(Load *load, const LoadMaking *making)
     return node_error(reader->document, load->node, reader->error,
                       "strength reduction: %g: expected a number above 0 by which strengths are divided",
                       load->value->number);
-  const Polyline *line = &load->history.line;
-  for (int k = 0; k < line->count; ++k)
-    if (!(1 + (load->value->number - 1) * line->rows[2 * k + 1] > 0))
-      return node_error(reader->document, load->history.value_node, reader->error,
-                        "table: with %g in it the factor 1 + (%g - 1) %g is not above 0; strengths are divided by it",
-                        line->rows[2 * k + 1], load->value->number, line->rows[2 * k + 1]);
   if (!history_is_controlled(&load->history)) return BRECCIA_OK;
   return node_error(reader->document, load->history.value_node, reader->error,
                     "controlled: the factor of a strength reduction is not found by 'control'; give it a 'ramp' or a "

@@ -2,6 +2,7 @@
  * and waves. */
 #include "support.h"
 
+#include "model/run.h"
 #include "solver/resultants.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
@@ -87,6 +88,15 @@ static void springs_exert_what_hangs_from_them(void **state)
   assert_force(r[4].now, 3, 0, 0, 1e-8);
   assert_force(r[4].largest, 3, 0, 0, 1e-8);
   assert_near(r[4].time, 1, 1e-12);
+  Text words = {0};
+  run_tell_loads(model, &words);
+  const char *body = strstr(text_words(&words), "force in all on the body"),
+             *between = strstr(text_words(&words), "force in all on the first end of springs between two parts");
+  const char *tie = strstr(text_words(&words), "  load 'tie': [-2, 0, 0]");
+  const char *ground = strstr(text_words(&words), "  load 'ground': [3, 0, 0]");
+  if (!(body && between && tie && ground && body < ground && ground < between && between < tie))
+    fail_msg("%s", text_words(&words));
+  text_free(&words);
   breccia_model_destroy(&model);
 }
 
@@ -128,6 +138,51 @@ static void waves_push_what_moves_the_bar_and_then_the_dashpots(void **state)
   }
 }
 
+/** The largest force is that of the step in which it was largest, and not of some of the steps: a bar that is struck
+ * by a motion of few steps. */
+static void the_largest_of_explicit_steps_misses_none(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      model_of(UNITS "materials: {m: {model: elastic-1d, Young modulus: 8e4, density: 2}}\n"
+                     "body: {bar: {material: m, lattice: line, spacing: 0.125, area: 1, shape: {box: {particles: "
+                     "[40, 1], first particle: [0.0625, 0]}}}}\n"
+                     "peridynamics: {formulation: bond-based, space: 1-D}\n"
+                     "loads:\n"
+                     "  - {name: blow, on: {face: x-}, velocity: [1e-3, free], history: {table: [[0, 0], [1e-3, 1], "
+                     "[2e-3, 0]]}}\n"
+                     "solve: {explicit: {time step: 2e-4, steps: 95}}\n");
+  Resultant r[MOST];
+  double largest = 0;
+  for (int step = 0; step < 95; ++step) {
+    step_surely(model, 1);
+    find(model, r);
+    largest = larger_of(largest, fabs(r[0].now[0]));
+  }
+  assert_true(largest > 0.2); /* of 0.4, impedance times speed */
+  assert_near(fabs(r[0].largest[0]), largest, 1e-8 * largest);
+  breccia_model_destroy(&model);
+}
+
+/** A bar that is pushed at an even pace until the run ends takes the impedance times the speed in its last step, too. */
+static void a_ramp_that_ends_with_the_run_takes_no_blow(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      model_of(UNITS "materials: {m: {model: elastic-1d, Young modulus: 8e4, density: 2}}\n"
+                     "body: {bar: {material: m, lattice: line, spacing: 0.125, area: 1, shape: {box: {particles: "
+                     "[160, 1], first particle: [0.0625, 0]}}}}\n"
+                     "peridynamics: {formulation: bond-based, space: 1-D}\n"
+                     "loads: [{name: push, on: {face: x-}, displacement: [5e-5, free], history: {ramp to: 0.05}}]\n"
+                     "solve: {implicit: {end time: 0.05, time step: 1e-3, local error: 1}}\n");
+  const double force = 2 * 200 * 1e-3;
+  Resultant r[MOST];
+  step_surely(model, INT64_MAX);
+  find(model, r);
+  assert_force(r[0].now, force, 0, 0, 0.05 * force);
+  breccia_model_destroy(&model);
+}
+
 /** What acts on the corner of three planes of symmetry, beside a spring. */
 static breccia_model *corner(int threads)
 {
@@ -167,6 +222,8 @@ int main(void)
       cmocka_unit_test(supports_bear_the_most_where_loads_are_largest),
       cmocka_unit_test(springs_exert_what_hangs_from_them),
       cmocka_unit_test(waves_push_what_moves_the_bar_and_then_the_dashpots),
+      cmocka_unit_test(the_largest_of_explicit_steps_misses_none),
+      cmocka_unit_test(a_ramp_that_ends_with_the_run_takes_no_blow),
       cmocka_unit_test(the_largest_is_the_same_to_the_bit_after_a_restart),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

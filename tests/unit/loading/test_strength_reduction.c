@@ -181,15 +181,22 @@ static void a_column_of_soil_without_tension_stands(void **state)
 static void factors_that_come_to_nothing_are_refused(void **state)
 {
   (void)state;
-  char *words =
-      refusal_of("units: {length: m, force: kN, time: s}\n"
-                 "materials: {m: {model: j2, density: 2, Young modulus: 1e3, Poisson ratio: 0.25, yield stress: 1}}\n"
-                 "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
-                 "loads: [{on: {face: z-, layers: 3}, displacement: [0, 0, 0]}, {strength reduction: 2, history: "
-                 "{table: [[0, 0], [1, "
-                 "-1]]}}]\nsolve: {static: {increments: 1}}\n");
-  holds_words(words, "is not above 0");
-  free(words);
+  static const char *const histories[] = {"{table: [[0, 0], [1, -1]]}", "{sine: {frequency: 1 Hz, phase: 0}}",
+                                          "{product: [{ramp to: 1}, {table: [[0, -1], [1, -1]]}]}",
+                                          "{sum: [{ramp to: 1}, {table: [[0, 0], [1, -3]]}]}"};
+  for (size_t k = 0; k < sizeof histories / sizeof *histories; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck,
+             "units: {length: m, force: kN, time: s}\n"
+             "materials: {m: {model: j2, density: 2, Young modulus: 1e3, Poisson ratio: 0.25, yield stress: 1}}\n"
+             "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+             "loads: [{on: {face: z-, layers: 3}, displacement: [0, 0, 0]}, {strength reduction: 2, history: "
+             "%s}]\nsolve: {static: {increments: 1}}\n",
+             histories[k]);
+    char *words = refusal_of(deck);
+    holds_words(words, "is not above 0|strengths are divided by it");
+    free(words);
+  }
 }
 
 int main(void)
