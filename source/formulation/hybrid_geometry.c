@@ -56,7 +56,7 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
 }
 
 /** Finds the vectors g of the members of a listed row by the bonds that are intact now.
- *  @param[in,out] laminate  of the row, or NULL; found anew
+ *  @param[out] laminate  of the row; NULL: the row is no laminate
  *  @return false: there is none, and the point carries nothing */
 static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate)
 {

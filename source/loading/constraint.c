@@ -68,14 +68,12 @@ double constraint_velocity(const Constraint *constraint, double run_time, double
          (run_time + little - before);
 }
 
-double constraint_acceleration(const Constraint *constraint, double run_time, double step, bool ends)
+double constraint_acceleration(const Constraint *constraint, double run_time, double step)
 {
   Load *load = constraint->load;
-  const double time = run_time - load->begin, roundings = 1e-6;
+  const double time = run_time - load->begin;
   if (time <= 0) return 0;
   if (constraint->order == 2) return constraint->value * history_factor(&load->history, time);
-  if (ends && time > 2 * step && fabs(history_corner(&load->history, time - step / 2) - time) < roundings * step)
-    run_time -= step;
   return (constraint_displacement(constraint, run_time + step) - 2 * constraint_displacement(constraint, run_time) +
           constraint_displacement(constraint, run_time - step)) /
          (step * step);

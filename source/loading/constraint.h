@@ -101,8 +101,7 @@ double constraint_velocity(const Constraint *constraint, double time, double ste
 
 /** Acceleration along it at a time of the run, 0 before its load has begun. By one thread.
  *  @param[in] step  time over which displacements are differenced, unless accelerations are prescribed: where velocities jump, what it takes is
- *                   spread over a step
- *  @param[in] ends  the run ends at this time: a jump of the velocity there is part of what would follow, and left out */
-double constraint_acceleration(const Constraint *constraint, double time, double step, bool ends);
+ *                   spread over a step */
+double constraint_acceleration(const Constraint *constraint, double time, double step);
 
 #endif

@@ -14,8 +14,6 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-enum { OTHERS = 7 }; /* keys that all loads have */
-
 static const Field load_fields[] = {
     {.key = "name",
      .kind = FIELD_TEXT,
@@ -96,6 +94,8 @@ static const Field load_fields[] = {
    .group = 'A'},
 #include "loading/load/loads.h"
 };
+/* Number of keys that all loads have; those of the types follow, one each. */
+enum { OTHERS = sizeof load_fields / sizeof *load_fields - sizeof types / sizeof *types };
 
 /** Which load it is: its place in the list. */
 static int index_of(const LoadSpec *spec)

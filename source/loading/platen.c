@@ -425,7 +425,7 @@ void platen_push(const Constraint *c, Particles *p, double time)
 {
   Platen *q = c->platen;
   const double step = 2 * c->load->motion.lag; /* none where forces are found again for a state that was restored */
-  if (step > 0) q->given = constraint_acceleration(c, time, step, false);
+  if (step > 0) q->given = constraint_acceleration(c, time, step);
   double acceleration[MAX_LEADERS];
   platen_find_accelerations(c, p, acceleration);
   if (c->one_sided && !c->one_sided->open[0] && platen_pulls(c, p, acceleration)) {

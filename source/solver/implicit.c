@@ -281,13 +281,6 @@ static void describe(const Solver *run, const char *time, Text *text)
            linear_solver_words(&s->newton.linear));
 }
 
-/** Returns true in the last state of a run in motion: what prescribed motions do then is not seen any more. */
-static bool ends_run(const Solver *run)
-{
-  const Clock *clock = &run->clock;
-  return clock->ended && (clock->stage + 1 == clock->stages || solver_stage_rests(run, clock->stage + 1));
-}
-
 /** Accelerations that are kept are those of free particles: what is prescribed has its own. */
 static double inertia(const Solver *run, const Constraint *constraint, int64_t n)
 {
@@ -297,7 +290,7 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   return constraint_along(constraint, s->drag, i) +
          p->inertia[constraint->row][i] * p->volume[i] *
              (constraint_part(constraint, n) *
-                  constraint_acceleration(constraint, run->clock.time, run->clock.time_step, ends_run(run)) +
+                  constraint_acceleration(constraint, run->clock.time, run->clock.time_step) +
               constraint_followed(constraint, s->acceleration, n));
 }
 

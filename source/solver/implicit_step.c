@@ -47,7 +47,7 @@ static void implicit_still_leaders(const Implicit *s, double time, bool velociti
     const Constraint *c = &s->loading->constraints[n];
     if (!c->platen || !c->platen->closes || !load_acts(s->loading, c->load)) continue;
     const double change = velocities ? constraint_velocity(c, time, s->length) - c->platen->velocity
-                                     : constraint_acceleration(c, time, s->length, false) - c->platen->acceleration;
+                                     : constraint_acceleration(c, time, s->length) - c->platen->acceleration;
     for (int m = 0; m < constraint_leaders(c); ++m) constraint_add(c, v, constraint_leader(c, m), change);
   }
 }
@@ -145,8 +145,7 @@ static void accelerate_with_platen(const Constraint *c, int64_t n, void *context
   Implicit *s = context;
   const int32_t i = c->load->selection.places[n];
   if (!c->platen) return;
-  const double given =
-      c->platen->closes ? c->platen->acceleration : constraint_acceleration(c, s->then, s->length, false);
+  const double given = c->platen->closes ? c->platen->acceleration : constraint_acceleration(c, s->then, s->length);
   constraint_add(c, s->result, i,
                  constraint_part(c, n) * given + constraint_followed(c, s->result, n) -
                      constraint_along(c, s->result, i));

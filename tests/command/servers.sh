@@ -114,7 +114,7 @@ same swollen swollen-served results.vtkhdf
   fail "swollen: its free strain does nothing"
 
 # Bonds, each with a law of one strain.
-bonds() { deck "$1" | sed 's/correspondence, horizon/bond-based, horizon/; s/, zero-energy control: {silling: 0.1}//; s/900/2e5/g'; }
+bonds() { deck "$1" | sed 's/correspondence, horizon/bond-based, strength of: bonds, horizon/; s/, zero-energy control: {silling: 0.1}//; s/900/2e5/g'; } # laws in servers have the strength that they are given
 softening='Young modulus=3e7; tensile strength=3000; fracture energy=0.1; length=0.03'
 bonds "model: bilinear-softening, Young modulus: 3e7, tensile strength: 3000, fracture energy: 0.1, length: 0.03" > bonds.yaml
 bonds "remote: 'bilinear-softening; $softening', server: ['unix:$PWD/one']" > bonds-served.yaml

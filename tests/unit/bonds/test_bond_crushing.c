@@ -89,7 +89,7 @@ static double damage_at(const char *space, const char *shape, const char *field)
 {
   breccia_model *m =
       model_of(LAW "body: {b: {material: m, %s, spacing: 20, shape: {box: {from: %s}}}}\n"
-                   "peridynamics: {formulation: bond-based, space: %s}\n"
+                   "peridynamics: {formulation: bond-based, space: %s, strength of: bonds}\n"
                    "loads: [{on: {all: yes}, field: {displacement: %s}}]\n"
                    "solve: {static: {increments: 1}}\n",
                33000.0, 38.0, 0.0022, strcmp(space, "3-D") ? "thickness: 50, lattice: square" : "lattice: cubic", shape,
@@ -183,7 +183,7 @@ static void a_prism_pressed_off_its_axis_carries_what_its_section_does(void **st
     last = fabs(force_above(m, 215));
     most = larger_of(most, last);
   }
-  if (!(most > 0.93 * told && most < 1.05 * told)) fail_msg("%g kN, by its section %g", most / 1e3, told / 1e3);
+  if (!(most > 0.88 * told && most < 1.05 * told)) fail_msg("%g kN, by its section %g", most / 1e3, told / 1e3);
   assert_true(last < 0.95 * most);
   breccia_model_destroy(&m);
 }

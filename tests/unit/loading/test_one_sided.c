@@ -339,7 +339,7 @@ static void a_jack_leaves_its_beam(void **state)
         assert_near(presses, held, (k < 2 ? 1e-6 : 0.04) * fabs(largest));
       }
       largest = fmin(largest, held);
-      assert_true(presses <= 1e-6 * fabs(largest));
+      assert_true(presses <= (k < 3 ? 1e-6 : 1e-3) * fabs(largest)); /* explicit steps let go a step late */
     }
     assert_near(wrench_of(m[1], "jack").force[1], 0, 1e-9 * fabs(largest));
     assert_near(moved_at(m[1], 1, 115, 75), 0, k < 2 ? 1e-7 : 2e-3);

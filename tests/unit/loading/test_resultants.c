@@ -164,25 +164,6 @@ static void the_largest_of_explicit_steps_misses_none(void **state)
   breccia_model_destroy(&model);
 }
 
-/** A bar that is pushed at an even pace until the run ends takes the impedance times the speed in its last step, too. */
-static void a_ramp_that_ends_with_the_run_takes_no_blow(void **state)
-{
-  (void)state;
-  breccia_model *model =
-      model_of(UNITS "materials: {m: {model: elastic-1d, Young modulus: 8e4, density: 2}}\n"
-                     "body: {bar: {material: m, lattice: line, spacing: 0.125, area: 1, shape: {box: {particles: "
-                     "[160, 1], first particle: [0.0625, 0]}}}}\n"
-                     "peridynamics: {formulation: bond-based, space: 1-D}\n"
-                     "loads: [{name: push, on: {face: x-}, displacement: [5e-5, free], history: {ramp to: 0.05}}]\n"
-                     "solve: {implicit: {end time: 0.05, time step: 1e-3, local error: 1}}\n");
-  const double force = 2 * 200 * 1e-3;
-  Resultant r[MOST];
-  step_surely(model, INT64_MAX);
-  find(model, r);
-  assert_force(r[0].now, force, 0, 0, 0.05 * force);
-  breccia_model_destroy(&model);
-}
-
 /** What acts on the corner of three planes of symmetry, beside a spring. */
 static breccia_model *corner(int threads)
 {
@@ -223,7 +204,6 @@ int main(void)
       cmocka_unit_test(springs_exert_what_hangs_from_them),
       cmocka_unit_test(waves_push_what_moves_the_bar_and_then_the_dashpots),
       cmocka_unit_test(the_largest_of_explicit_steps_misses_none),
-      cmocka_unit_test(a_ramp_that_ends_with_the_run_takes_no_blow),
       cmocka_unit_test(the_largest_is_the_same_to_the_bit_after_a_restart),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -117,14 +117,14 @@ static const struct Case {
      1e-5},
     {"a controlled opening",
      "materials: {m: {model: bilinear-softening, density: 2.4 t/m3, Young modulus: 30 GPa, tensile strength: 3 MPa, "
-     "fracture energy: 100 N/m}}\n" PLATE("9, 5",
-                                          "0.01 m") "peridynamics: {formulation: bond-based, space: plane stress}\n"
-                                                    "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: "
-                                                    "{face: x+}, traction: [1 MPa, 0], history: "
-                                                    "{controlled: yes}}]\n"
-                                                    "solve: {static: {end time: 1 s, increments: 6, control: {opening "
-                                                    "between: [[5 mm, 25 mm], [85 mm, 25 mm]], to: "
-                                                    "0.004 mm}}}\n",
+     "fracture energy: 100 N/m}}\n" PLATE(
+         "9, 5", "0.01 m") "peridynamics: {formulation: bond-based, space: plane stress, strength of: bonds}\n"
+                           "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: "
+                           "{face: x+}, traction: [1 MPa, 0], history: "
+                           "{controlled: yes}}]\n"
+                           "solve: {static: {end time: 1 s, increments: 6, control: {opening "
+                           "between: [[5 mm, 25 mm], [85 mm, 25 mm]], to: "
+                           "0.004 mm}}}\n",
      1e-4},
     {"blocks that meet with friction",
      "materials: {m: {model: elastic, density: 2 t/m3, Young modulus: 10 MPa, Poisson ratio: 0.25}}\n"

@@ -262,11 +262,11 @@ static const struct {
     {"elastic-brittle, Young modulus: 1e4, tensile strength: 1e4", "bond-based", "[0, 0, 0.1]"},
 };
 
-/** But one by secants. */
+/** All laws are in the table but those that bodies at rest take by secants. */
 static void every_law_is_among_them(void **state)
 {
   (void)state;
-  static const char *const others[] = {"link-damage"};
+  static const char *const others[] = {"link-damage", "fib-concrete"};
   for (int k = 0; law_at(NULL, k); ++k) {
     const char *name = law_at(NULL, k)->name;
     bool found = false;
