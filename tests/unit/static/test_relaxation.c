@@ -55,7 +55,7 @@ static const struct Case {
     {"a bar whose bonds soften, before its peak",
      "materials: {m: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, "
      "fracture "
-     "energy: 100 N/m}}\n" PLATE "peridynamics: {formulation: bond-based, space: plane stress}\n"
+     "energy: 100 N/m}}\n" PLATE "peridynamics: {formulation: bond-based, space: plane stress, strength of: bonds}\n"
      "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},"
      " {on: {face: x+, layers: 3}, displacement: [0.000115, free], history: {ramp to: 1}}]\n",
      3, false},
