@@ -58,6 +58,7 @@ struct Correspondence {
   double *hold[6];     /* C: one component, or six, or none */
   double *held[3];     /* C u, if neighbours read it */
   ControlFades fades;
+  bool influence_falls; /* it is smaller at the horizon than at half of it */
   Fading *fading; /* NULL: C stays as it is */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
@@ -144,6 +145,8 @@ void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 /** Whether control keeps its stiffness where points of a material have lost theirs. */
 bool correspondence_control_lasts(const void *formulation, const Material *material);
+/** Returns true if the influence of bonds falls with their length, so that fading control can be bounded on slip lines. */
+bool correspondence_influence_falls(const void *formulation);
 /** Energy that the control stores at a place. */
 double correspondence_held(const void *formulation, int64_t place);
 /** Energies [energy] of a place whose point has less than 0.7 of its stiffness left, as a secant; else zeros. */

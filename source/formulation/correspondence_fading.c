@@ -8,7 +8,8 @@
  * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families in which a
  * factor has fallen before.
  *
- * Where control fades with yielding, a point whose law yields and does not soften keeps the smaller of the stiffness left and
+ * Where control fades with yielding, and influence falls with distance, a point whose law yields and does not soften
+ * keeps the smaller of the stiffness left and
  *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
  * Slip lines are narrower than families: their motion is one of which the strain sees a part, and the rest would be
  * resisted by control beside the strength of the law.
@@ -42,6 +43,11 @@ static bool fades_in(const Correspondence *c, const Material *m)
 {
   return c->fades == FADES_WITH_YIELDING ? !m->law->linear
                                          : c->fades == FADES_WITH_SOFTENING && m->softening_energy > 0;
+}
+
+bool correspondence_influence_falls(const void *formulation)
+{
+  return ((const Correspondence *)formulation)->influence_falls;
 }
 
 bool correspondence_control_lasts(const void *formulation, const Material *material)
@@ -230,7 +236,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
   const Fading *f = c->fading;
   const Material *m = points_material(c->points, sweep->first * SLICE);
   const bool may = fades_in(c, m) && !c->points->elastic_stage, softens = may && m->softening_energy > 0;
-  const bool yields = c->fades == FADES_WITH_YIELDING;
+  const bool yields = c->fades == FADES_WITH_YIELDING && c->influence_falls;
   const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (f->mark[slice]) set_hold(c, slice, f->next);

@@ -225,6 +225,8 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   const CorrespondenceSpec *spec = parts->keys;
   const ControlSpec *control = spec->control;
   c->finite = !strcmp(spec->strain, "green-lagrange");
+  const double horizon = parts->family->horizon;
+  c->influence_falls = parts->influence->value(0.75, 0.75 * horizon) < parts->influence->value(0.25, 0.25 * horizon);
   c->control = CONTROL_SCALAR;
   c->strength = c->plane ? 0.2 : 0.1;
   if (control && !isnan(control->silling)) c->strength = control->silling;

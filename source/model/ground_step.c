@@ -70,7 +70,7 @@ static bool ground_step_slips_freely(const Domain *d)
     for (int m = 0; m < d->material_count; ++m) {
       const Region *region = &d->regions[r];
       if (!region_is_made_of(d, region, d->materials[m].name)) continue;
-      freely &= !strcmp(region->type->name, "correspondence") &&
+      freely &= !strcmp(region->type->name, "correspondence") && correspondence_influence_falls(region->formulation) &&
                 !correspondence_control_lasts(region->formulation, &d->materials[m]);
     }
   return freely;
@@ -79,8 +79,9 @@ static bool ground_step_slips_freely(const Domain *d)
 double ground_step_excess(const Domain *d, double spacings)
 {
   /* Vertical cuts of 8, 12 and 16 spacings came to 1.28, 1.25 and 1.20 of closed forms in ordinary families, one of 16
-   * to 1.29 or more where control keeps its stiffness, one of 8 to 1.06 where control fades (docs/choosing.md): the
-   * excess falls as the root of the number at best. */
-  const double most = ground_step_slips_freely(d) ? 0.1 : 0.35, few = 16;
+   * to 1.29 or more where control keeps its stiffness: that excess falls as the root of the number at best. Where slip
+   * lines are free 8, 12 and 16 spacings came to 1.06, 1.04 and 1.034 (docs/choosing.md). */
+  const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.6;
+  if (ground_step_slips_freely(d)) return fmin(freely_most, freely_spacings / spacings);
   return most * fmin(1, sqrt(few / spacings));
 }

@@ -641,8 +641,8 @@ static const char *ground_step_remedy(const breccia_model *model)
            "fades: yielding}', whose families resist slip lines by their strength alone";
   if (correspondence_control_lasts(region->formulation, main_material(model)))
     return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical'";
-  if (strcmp(model->spec->peridynamics->influence, "constant") != 0) return "";
-  return "; with 'influence: constant' it may come out too low by as much: take 'conical'";
+  if (correspondence_influence_falls(region->formulation)) return "";
+  return ", or take 'influence: conical', with which control holds a twentieth of the strength on slip lines";
 }
 
 /** Adds how far a factor of safety comes out too high, where strengths are divided. */

@@ -373,7 +373,7 @@ static void slopes_stand_with_control_as_it_is(void **state)
   (void)state;
   breccia_model *m = model_of(
       "units: {length: m, force: kN, time: s}\n"
-      "variables: {factor: 1.3}\n"
+      "variables: {factor: 1.6}\n"
       "materials: {soil: {model: mohr-coulomb, density: 2 t/m3, Young modulus: 100 MPa, Poisson ratio: 0.3, cohesion: "
       "\"${10 kPa/factor}\", friction angle: \"${atan(tan(20 deg)/factor)}\", dilation angle: 0, tensile strength: "
       "27.47 kPa}}\n"
