@@ -51,7 +51,7 @@ BRECCIA_API void breccia_text_free(char *text);
 
 /** One parameter of a law: the reader, the messages, the help and the documentation are made from this. An optional one that is
  *  called "length" is the length over which a fracture energy is spread; where a deck leaves it out it is the formulation's.
- *  An optional one that is called "dimensions" is the dimension of the body, likewise; NaN outside a body. */
+ *  An optional parameter that is called "dimensions" defaults to the dimension of the body; NaN outside a body. */
 typedef struct breccia_parameter { /* a row of a table, and therefore without a size: it stays as it is */
   const char *name;                /* key in the deck, lower case words */
   const char *dimension;           /* "1", "stress", "density", "length", ... (docs/deck.md lists them) */
@@ -76,8 +76,8 @@ typedef struct breccia_batch {
   int elastic_stage;      /* 1: respond elastically whatever the law (gravity stage) */
   double time, time_step; /* at the end of the step under way, and its length; 0 where time does not pass */
   const double *length;   /* over which a fracture energy is spread, [count]; NULL: not known */
-  /* Of laws with `takes_lateral`: elongation of the bond by Poisson's effect of the pressure across it, as the elastic
-   * body has it by the strains around the bond, [count], 0 or more; NULL: none */
+  /* Elongation of bonds by Poisson's effect of the elastic pressure across them [count], 0 or more. Filled for laws
+   * with `takes_lateral`; NULL: none */
   const double *lateral;
 } breccia_batch;
 
@@ -151,8 +151,8 @@ typedef struct breccia_law {
    * cohesions, yield stresses, and the tangents of angles of friction. Histories must stay admissible under the
    * strengths that `prepare` makes of them. NULL: the law does not tell. */
   void (*reduce_strength)(double *values, double factor);
-  int takes_lateral; /* 1: a law of one component that reads `lateral` of its batches. A point alone has none */
-  /** Compressive strength of a body of bonds of this law, above 0. NULL: the law has none, or does not tell. */
+  int takes_lateral; /* 1: the law has one component and reads `lateral` of its batches; single points have none */
+  /** Returns the compressive strength of a body of bonds of this law, above 0. NULL: the law reports none. */
   double (*compressive_strength)(const void *constants);
 } breccia_law;
 
@@ -368,7 +368,7 @@ typedef struct breccia_why {
   long long bond[2]; /* numbers of the two particles, with one_bond */
 } breccia_why;
 
-/** Tells how many bonds of a result broke from which cause, and when, where and why single ones did.
+/** Reports the number of broken bonds of a result by cause, and the time, position and reason of single bonds.
  *  @param[in]  result  folder of results, or a file of them
  *  @param[out] text    for breccia_text_free; NULL after a failure
  *  @return 0; 2: no results, damaged ones, or a bond that did not break */

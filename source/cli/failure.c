@@ -174,8 +174,8 @@ static int try_samples(Search *s, double from, double to, breccia_error *error)
   return status;
 }
 
-/** Looks closer where the body bears all loads so far, but displacement grows faster with the load than at first: over a
- * wide range a jump of it is not seen. @return status */
+/** Refines the search for a jump of displacement. The body must support all loads so far, and displacement must grow
+ * faster with the load than at first. A wide range of loads can hide such a jump. @return status */
 static int look_for_jumps(Search *s, double sign, breccia_error *error)
 {
   double bears = 0, fails = INFINITY, low, high;

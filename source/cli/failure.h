@@ -75,8 +75,8 @@ void failure_compare(Search *search);
 /** Finds the largest load that the body bears below all under which it fails or there is no verdict, and the least of
  * these; INFINITY: none. */
 void failure_bracket(const Search *search, double *bears, double *fails);
-/** Finds the two loads next to each other between which displacement grows most with the load, where it grows faster than
- * at first. @return false: nowhere */
+/** Finds the two adjacent loads between which displacement grows most with the load, and faster than at first.
+ * @return false if there are none */
 bool failure_steepest(const Search *search, double *low, double *high);
 /** Returns the share of the runs under a load that fail or have no verdict. */
 double failure_share(const Search *search, double load);

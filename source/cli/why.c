@@ -1,4 +1,4 @@
-/* Why bonds broke: counts by cause, and the time, position and reason of single bonds. */
+/* Command `breccia why`: number of broken bonds by cause, and the time, position and reason of single bonds. */
 #include "verbs.h"
 
 #include <limits.h>
@@ -11,7 +11,7 @@ static const Option options[] = {
     {0},
 };
 
-static int run(int argc, char **argv, const Verb *verb)
+static int why_run(int argc, char **argv, const Verb *verb)
 {
   const char *values[COUNT];
   breccia_why wish = {.size = sizeof wish, .first = 10};
@@ -45,4 +45,4 @@ const Verb verb_why = {
     .more =
         "FOLDER is the folder of a run, or its file results.vtkhdf. Causes: the limit of the failure criterion, with\n"
         "value and limit; a law that found no stress; too few bonds left at a particle.",
-    .run = run};
+    .run = why_run};

@@ -227,9 +227,10 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   return status;
 }
 
-/** Prepares the law of a material with other parameter values, in its own constants, to which points hold on.
- *  @param[in] values  [parameters]; NULL: memory is out
- *  @return BRECCIA_OK, or the status with the constants as they were */
+/** Prepares the law of a material with other parameter values. The constants keep their memory, because points refer
+ *  to them.
+ *  @param[in] values  [parameters]; NULL: out of memory
+ *  @return BRECCIA_OK, or an error status with the constants unchanged */
 static int material_prepare_again(Material *material, const double *values, char *reason, size_t size)
 {
   const breccia_law *law = material->law;

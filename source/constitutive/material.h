@@ -38,8 +38,8 @@ typedef struct Material {
 } Material;
 
 /** Prepares a material from its section (reader->context is the LawList).
- *  @param[in] length      the formulation's, for laws that spread a fracture energy; NaN: it has none
- *  @param[in] dimensions  of the body; NaN: there is none */
+ *  @param[in] length      characteristic length of the formulation, for laws with a fracture energy; NaN: none
+ *  @param[in] dimensions  dimension of the body; NaN: there is no body */
 int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length,
                     double dimensions);
 
@@ -66,12 +66,12 @@ bool material_can_reduce(const Material *material);
  * were */
 int material_reduce(Material *material, double factor, char *reason, size_t size);
 
-/** Returns true if the law softens along bonds, and bonds can take a share of the tensile strength of the deck. */
+/** Returns true if the law softens along bonds and its tensile strength can be reduced to a share. */
 bool material_can_share(const Material *material);
-/** Prepares the law with a share of the tensile strength that the deck gives, in place of the present share. The
- *  fracture energy stays. By one thread, before points are updated.
- *  @param[out] reason  why the law refuses the strength
- *  @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strength as it was */
+/** Prepares the law with a share of the tensile strength of the deck, which replaces the current share. The fracture
+ *  energy is unchanged. Serial; to be called before points are updated.
+ *  @param[out] reason  reason for which the law refuses the strength
+ *  @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strength unchanged */
 int material_share_strength(Material *material, double share, char *reason, size_t size);
 
 /** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.
@@ -85,7 +85,7 @@ static inline int material_update(const Material *material, const breccia_batch 
 /** Young's modulus and Poisson's ratio of the undamaged material. */
 double material_young(const Material *material);
 double material_poisson(const Material *material);
-/** Returns true if two materials have the same first moduli, to rounding. */
+/** Returns true if two materials have equal initial moduli up to round-off. */
 bool material_is_as_stiff(const Material *one, const Material *other);
 /** Whether the law tells how stress changes with strain, asked of an unstrained point; that of a server is taken to do so, as is one that cannot be
  *  integrated there. */

@@ -160,7 +160,7 @@ int material_limit(Material *material, double smallest, double largest, char *re
     return uniaxial ? BRECCIA_FAILURE : BRECCIA_USER_ERROR;
   }
   c->base = *material;
-  material->values = NULL; /* which the base owns */
+  material->values = NULL; /* owned by the base material */
   c->smallest = isnan(smallest) ? -INFINITY : smallest;
   c->largest = isnan(largest) ? INFINITY : largest;
   material->law = &law_min_max;

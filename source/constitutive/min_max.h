@@ -6,15 +6,15 @@
 
 extern const breccia_law law_min_max;
 
-/** Returns the material around whose law the limits of strain are put, or NULL where strains have none. */
+/** Returns the base material to whose law limits of strain are added, or NULL if a material has no such limits. */
 Material *material_within_limits(const Material *material);
 
 /** Whether a point has failed by the limits of its strain. */
 bool material_is_beyond_limits(const Material *material, const double *history);
 
-/** Returns true if the law of a material, also inside limits of strain, reads the pressure across bonds. */
+/** Returns true if the law of a material, or the law inside its limits of strain, reads the pressure across bonds. */
 bool material_takes_lateral(const Material *material);
-/** Returns the compressive strength that the law of a material, also inside limits of strain, tells; NaN: none. */
+/** Returns the compressive strength of the law of a material, or of the law inside its limits of strain; NaN: none. */
 double material_compressive_strength(const Material *material);
 
 #endif

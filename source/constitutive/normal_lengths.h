@@ -1,7 +1,7 @@
-/* Length over which a point spreads its fracture energy, by the normal of its crack. A plane crack with the normal n
- * strains the points that stand on both of its sides, over a length l(n) that depends on the lattice (after Oliver 1989,
- * Int. J. Numer. Methods Eng. 28, 461, who finds it for elements). Laws take l of the first principal strain when their
- * damage begins, and keep it in their history: 0 before. */
+/* Characteristic length of a point with a fracture energy, as a function of the crack normal. A plane crack with the
+ * normal n strains the points with members on both sides of the crack, over a length l(n) that depends on the lattice
+ * (after Oliver 1989, Int. J. Numer. Methods Eng. 28, 461, who derives this length for finite elements). When damage
+ * begins, a law evaluates l for the first principal strain and stores l in its history. Before, the history has 0. */
 #ifndef BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 #define BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 
@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 typedef struct NormalLengths {
-  /** Returns l(n), or a number that is not above 0 where the lattice has none for n. NULL: one length for all normals.
+  /** Returns l(n); 0 or less if the lattice has no length for n. NULL: one length for all normals.
    *  @param[in] normal  unit vector */
   double (*across)(const void *context, const double normal[3]);
   const void *context;
@@ -20,14 +20,15 @@ typedef struct NormalLengths {
 
 struct Material;
 
-/** Gives lengths by normals to the law of a material.
- *  @param[in] lengths  NULL: nothing is given
- *  @return true if the law takes lengths */
+/** Sets the lengths by crack normal in the law of a material.
+ *  @param[in] lengths  NULL: only query whether the law accepts lengths
+ *  @return true if the law accepts lengths */
 bool normal_lengths_give(const struct Material *material, const NormalLengths *lengths);
 
-/** Returns the lengths of points [length]: as committed; of points whose damage begins, l of their first principal
- *  strain; 0 of all others, and where the first two principal strains are alike.
- *  @param[in] begins  points that are strained beyond what damages */
+/** Returns the lengths of points [length]. A point whose damage begins takes l of its first principal strain; all other
+ *  points keep the committed length. The length stays 0 where the first two principal strains are equal.
+ *  @param[in] begins     points strained beyond their damage threshold
+ *  @param[in] committed  lengths of the last step; 0: damage has not begun */
 LANES_INLINE Lanes normal_lengths_choose(const NormalLengths *lengths, const SpectrumApart *apart, LaneMask begins,
                                          Lanes committed)
 {

@@ -105,7 +105,7 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns the value of a bond that the criterion limits, without the raise of limits that orders bonds. */
+/** Returns the criterion's value of a bond, without the temporary raise of limits that orders the breaking of bonds. */
 static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane, double *limit)
 {
   const Bond bond = family_bond(&d->family, slice, slot, lane);
@@ -116,9 +116,9 @@ static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane,
   return value;
 }
 
-/** Returns E_c / E, the energy of a bond at its limit over its present energy. At rest E exceeds E_c where an
- *  increment or a crack that runs has carried the bond beyond its limit; the difference is booked as shed. In motion
- *  returns 1. */
+/** Returns E_c / E, the energy of a bond at its limit over its present energy. In equilibrium E exceeds E_c where an
+ *  increment or a running crack has carried the bond beyond its limit; the difference is added to the shed energy.
+ *  Returns 1 in motion. */
 static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment,
                          const BrokenBond *broken)
 {
@@ -141,8 +141,8 @@ static void book(Domain *d, double energy, double share)
   d->shed_energy += (1 - share) * energy;
 }
 
-/** Books the energy at its limit of a bond that others left without anything to carry, out of what has been shed in the
- *  step: its points have lost that energy with the members that the others were. */
+/** Moves the energy at the limit of a stranded bond from the shed energy of the step to the fracture energy. A stranded
+ *  bond lost its members to other broken bonds; its points lost the energy with these members. */
 static void book_stranded(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, double shed_before)
 {
   const Criterion *criterion = d->failure.criterion;
@@ -440,7 +440,7 @@ void domain_mend(Domain *d)
   forces_undo(&d->forces);
 }
 
-/** Work of a timed pass of the criterion: slices to test and whether the criterion tests them in every step. */
+/** Scratch state of a timed pass of the criterion: slices to test, and whether every step tests all of them. */
 typedef struct CriterionPass {
   Domain *domain;
   int64_t slices;
@@ -459,7 +459,7 @@ static void breaking_test_slice(void *context, int64_t index)
 double domain_criterion_seconds(Domain *d, double enough)
 {
   enum { FIRST = 64 };
-  const double stretch = 1e-12; /* criteria skip bonds that are not longer than in the reference shape */
+  const double stretch = 1e-12; /* criteria skip bonds that are not longer than in the reference configuration */
   Particles *p = d->particles;
   const size_t bytes = sizeof(double) * (size_t)p->places;
   double *kept =

@@ -58,11 +58,11 @@ typedef struct Joint {
   JointBond *bonds;
 } Joint;
 
-/** Why a bond broke. */
+/** Cause of a broken bond. */
 typedef enum BreakCause {
   BREAK_LIMIT,    /* the bond exceeded the limit of the failure criterion */
-  BREAK_LAW,      /* the law of the bond or of an end could not be integrated, and the point carries nothing */
-  BREAK_ISOLATED, /* bonds of the family that broke before left too few for a force */
+  BREAK_LAW,      /* the law of the bond or of an end could not be integrated, so that the point carries nothing */
+  BREAK_ISOLATED, /* earlier broken bonds left the family too few bonds for a force */
   BREAK_CAUSES
 } BreakCause;
 
@@ -71,10 +71,10 @@ typedef struct BrokenBond {
   double time;
   int32_t a, b; /* numbers, a < b */
   BreakCause cause;
-  double value, limit; /* of the criterion, in its dimension; NaN: none, or another cause */
+  double value, limit; /* of the failure criterion, in its dimension; NaN: none, or another cause */
 } BrokenBond;
 
-/** Word for a cause in result files and messages. */
+/** Returns the word for a cause in result files and messages. */
 const char *break_cause_word(BreakCause cause);
 
 /** A step under way. */
@@ -116,7 +116,7 @@ typedef struct Domain {
   Family family;
   Material *materials;
   int material_count;
-  struct MaterialLengths *lengths; /* [material_count] of points on bonds (domain_lengths.c); NULL: none */
+  struct MaterialLengths *lengths; /* [material_count] for points on bonds (domain_lengths.c); NULL: none */
   int32_t *material;               /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
@@ -252,9 +252,9 @@ double domain_step_begin(const Domain *domain);
  *  the step under way, strains and stresses those at its beginning. */
 void domain_break(Domain *domain, const Moment *moment);
 
-/** Measures the time that the failure criterion takes in one step, on a part of the body if the whole takes longer than
- *  `enough` [s]. Bonds are tested as if all were stretched; displacements come back unchanged.
- *  @return seconds a step; 0 without a criterion and for criteria that need not test every step */
+/** Measures the time of the failure criterion in one step. If the whole body takes longer than `enough` [s], the
+ *  function measures a part and extrapolates. All bonds are tested as if stretched; displacements are restored.
+ *  @return time in a step [s]; 0 without a criterion and for criteria that need not test every step */
 double domain_criterion_seconds(Domain *domain, double enough);
 
 /** When laws have answered to families without their broken bonds, by all threads: what torn places had received and have no more is booked,
@@ -273,14 +273,14 @@ int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
 /** Lets no bond break between particles that are marked or stand within a distance of one that is.
  *  @param[in] marked  [places] */
 int domain_keep_within(Domain *domain, const uint8_t *marked, double distance, Error *error);
-/** Returns 0 for round-off beside a whole. */
+/** Returns the value, or 0 if the value is round-off compared with `whole`. */
 static inline double without_rounding(double value, double whole)
 {
   return fabs(value) < 1e-12 * whole ? 0 : value;
 }
 
-/** Finds the middle of a bond, inside the body: of ends in layers outside of supports their originals count if both ends
- *  are there, otherwise the end inside alone.
+/** Computes the midpoint of a bond inside the body. An end in a layer outside of a support is replaced by its original
+ *  if both ends are in layers; otherwise the inner end alone gives the position.
  *  @param[in] ends  numbers of particles  @param[out] middle  reference position */
 void domain_bond_middle(const Domain *domain, const int32_t ends[2], double middle[3]);
 /** Adds a broken bond to the list. */
@@ -309,8 +309,8 @@ void domain_commit_points(Domain *domain);
 int domain_take_loads(Domain *domain, Loading *loading, const DeckReader *reader);
 /** Refuses a strength reduction that no law of the body takes, or one of them refuses. */
 int domain_check_strength(const Domain *domain, const Loading *loading, const DeckReader *reader);
-/** Refuses a strength reduction whose factor is not above 0 at some time that it acts.
- *  @param[in] time  for which it acts */
+/** Refuses a strength reduction whose factor is 0 or less at some time while the reduction acts.
+ *  @param[in] time  duration for which the reduction acts */
 int domain_check_reduction(const Load *load, double time, const DeckReader *reader);
 /** Divides strengths as loads say at a time, by one thread; domain_tell_time does it. */
 void domain_tell_strength(Domain *domain, double time);

@@ -1,6 +1,6 @@
-/* Lengths over which the points on the bonds of a lattice spread a fracture energy, by the normal of the crack
- * (constitutive/normal_lengths.h): the mean over the blocks of a material of what their formulation finds
- * (FormulationType.crack_length). */
+/* Characteristic lengths of points on lattice bonds as a function of the crack normal (constitutive/normal_lengths.h).
+ * The length of a material is the mean over its lattice blocks of the lengths that FormulationType.crack_length
+ * finds. */
 #include "base/memory.h"
 #include "constitutive/normal_lengths.h"
 #include "domain/regions.h"
@@ -33,7 +33,7 @@ static double lengths_across(const void *context, const double normal[3])
   return blocks ? sum / blocks : 0;
 }
 
-/** Returns true if a region has points of six strains on bonds whose formulation finds lengths. */
+/** Returns true if a region has points on bonds with six strain components, and its formulation finds lengths. */
 static bool lengths_are_known(const Region *region)
 {
   return region->points.on_bonds && region->points.components == 6 && region->type->crack_length;

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Numbers of a broken bond as saved: step, time, both ends, cause, value and limit; 0 stands for no value or limit. */
+/** Numbers of a saved broken bond: step, time, both ends, cause, value and limit; 0 encodes a missing value or
+ *  limit. */
 enum { NUMBERS_PER_BOND = 7 };
 
 /** What follows from the bonds of both ends of a broken or mended one. */

@@ -29,7 +29,7 @@ static int add_rows(Runs *r, int material, int64_t rows, Error *error)
   return BRECCIA_OK;
 }
 
-/** Adds the rows of the bonds of a slice: its own material's, then second rows of other materials. */
+/** Adds the rows of the bonds of a slice: first those of the slice's material, then second rows of other materials. */
 static int add_bonds(const Domain *d, const BondList *l, int64_t slice, Runs *r, Error *error)
 {
   int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];

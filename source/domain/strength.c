@@ -42,9 +42,10 @@ int domain_check_reduction(const Load *load, double time, const DeckReader *read
   double factor;
   if (load->type != &strength_reduction_load || history_least(&load->history, change, time, &factor) > 0)
     return BRECCIA_OK;
-  return node_error(reader->document, load->history.value_node, reader->error,
-                    "%s: with %.4g in it the factor 1 + (%g - 1) %.4g is not above 0; strengths are divided by it",
-                    load->history.value_node->key, factor, load->value->number, factor);
+  return node_error(
+      reader->document, load->history.value_node, reader->error,
+      "%s: the history comes to %.4g, where the factor 1 + (%g - 1) %.4g is not above 0; strengths are divided by it",
+      load->history.value_node->key, factor, load->value->number, factor);
 }
 
 void domain_tell_strength(Domain *d, double time)

@@ -1,7 +1,8 @@
-/* Tensile strength of bodies whose bonds soften (docs/theory.md 2). Where bonds have the share x of the tensile
- * strength of the deck, a body carries F(x) times what its bonds carry, in the direction in which it carries most:
- * slanted bonds gain when those along the pull have begun to soften. Bonds take the share with x F(x) = 1, so that the
- * body carries the tensile strength. F changes slowly with x, so that x = 1 / F(x) converges by turns. */
+/* Tensile strength of bodies whose bonds soften (docs/theory.md 2). If bonds have the share x of the tensile strength
+ * of the deck, a body carries F(x) times the strength of its bonds in its strongest direction. F exceeds 1 because the
+ * stress of slanted bonds still increases when bonds along the pull have begun to soften. The body carries the tensile
+ * strength of the deck for the share with x F(x) = 1. F varies slowly, so that the fixed-point iteration x = 1 / F(x)
+ * converges. */
 #include "domain/tensile_strength.h"
 
 #include "formulation/whole_family.h"
@@ -10,20 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Turns of x = 1 / F(x): each leaves at most a fifth of the error. Fixed, so that round-off cannot change their number.
- * The direction of the largest strength is looked for again so many times. */
+/* STRENGTH_TURNS: iterations of x = 1 / F(x); each reduces the error to a fifth or less. Their number is fixed, so that
+ * round-off cannot change it. STRENGTH_LOOKS: largest number of searches for the strongest direction. */
 enum { STRENGTH_TURNS = 10, STRENGTH_LOOKS = 3, PLANE_DIRECTIONS = 24 };
 
-/* Directions in space: neighbours, next and third neighbours of a cube, without opposite ones. */
+/* Directions in space: vectors with components of -REACH to REACH, without opposite ones. */
 enum { REACH = 2, WIDTH = 2 * REACH + 1, SPACE_DIRECTIONS = WIDTH * WIDTH * WIDTH / 2 };
 
-/** Least and largest strength of a block over directions, over that of its bonds. */
+/** Smallest and largest strength of a block over all directions, over the strength of its bonds. */
 typedef struct StrengthBand {
   double least, most;
-  double strongest[3]; /* direction of the largest */
+  double strongest[3]; /* direction of the largest strength */
 } StrengthBand;
 
-/** Finds direction k of a body. @return false if it stands for another one as well */
+/** Computes direction k of a body. @return false if direction k is a multiple of another direction */
 static bool strength_direction(int dimensions, int k, double n[3])
 {
   if (dimensions == 2) {
@@ -48,7 +49,7 @@ static double strength_along(const Region *region, int block, const double n[3])
   return region->type->uniaxial_strength(region->formulation, block, n);
 }
 
-/** Takes the strength along a direction. @return false if bonds do not soften */
+/** Adds the strength along a direction to the band. @return false if bonds do not soften */
 static bool strength_take(const Region *region, int block, const double n[3], StrengthBand *band)
 {
   const double strength = strength_along(region, block, n);
@@ -60,8 +61,8 @@ static bool strength_take(const Region *region, int block, const double n[3], St
   return true;
 }
 
-/** Takes the directions of the bonds of one particle inside a block of particles from a file, and in the plane those
- *  across them: a lattice in a file may be turned. */
+/** Adds the directions of the bonds of one particle inside a block of particles from a file, and in the plane the
+ *  directions across these bonds: a lattice in a file may be turned. */
 static bool strength_take_bonds(const Domain *d, const Region *region, int block, StrengthBand *band)
 {
   const Family *f = &d->family;
@@ -79,7 +80,7 @@ static bool strength_take_bonds(const Domain *d, const Region *region, int block
   return true;
 }
 
-/** Finds the band of a block. @return false if its bonds do not soften */
+/** Finds the strength band of a block. @return false if bonds of the block do not soften */
 static bool strength_band(const Domain *d, const Region *region, int block, StrengthBand *band)
 {
   const int directions = d->body.dimensions == 2 ? PLANE_DIRECTIONS : SPACE_DIRECTIONS;
@@ -115,8 +116,8 @@ static bool strength_is_known(const Domain *d, int block)
   return false;
 }
 
-/** Finds the share with which a block carries the tensile strength in its strongest direction.
- *  @return the status of the law, with the reason */
+/** Finds the share with which a block carries the tensile strength of the deck in its strongest direction.
+ *  @return status of the law, with the reason */
 static int strength_find_share(const Domain *d, const Region *region, int block, Material *m, double *share,
                                char *reason, size_t size)
 {
@@ -163,7 +164,7 @@ void tensile_strength_describe(const Domain *d, Text *text)
     int k = 0;
     const Region *region = strength_region(d, block, &k);
     StrengthBand band;
-    if (!d->body.lattices[block].chunks && d->broken_count) continue; /* families inside may be torn */
+    if (!d->body.lattices[block].chunks && d->broken_count) continue; /* families inside may have broken bonds */
     if (!region || strength_is_known(d, block) || !strength_band(d, region, block, &band)) continue;
     const char *const name = d->body.blocks[block]->head.name;
     const Material *m = &d->materials[k];

@@ -1,6 +1,6 @@
-/* Toughness by direction: what plane cracks take of the lattice of a block, over the fracture energy that the deck asks
- * for (failure/crack_planes.h, docs/theory.md 4). Where bonds break at once running cracks take more than planes cut,
- * and loads feel more than what bonds take: failure/crack_wake.c has what was measured. */
+/* Toughness by direction: fracture energy of plane cracks through the lattice of a block, over the fracture energy of
+ * the deck (failure/crack_planes.h, docs/theory.md 4). If bonds break at once, running cracks dissipate more than plane
+ * cracks, and loads do more work than bonds dissipate: failure/crack_wake.c has measured values. */
 #include "domain/toughness.h"
 
 #include "constitutive/normal_lengths.h"
@@ -16,8 +16,8 @@ typedef struct ToughnessBlock {
   CrackBlock block;
   const Criterion *criterion; /* NULL: a law that softens */
   const Material *material;
-  double limit, unit; /* of bonds; what counts 1 */
-  CrackWake wake;     /* of the criterion */
+  double limit, unit; /* limit of bonds; value of the quantity that counts as a share of 1 */
+  CrackWake wake;     /* measured shares for the criterion */
 } ToughnessBlock;
 
 static double toughness_across(const void *context, const double normal[3])
@@ -37,14 +37,14 @@ static double toughness_asked(const FailureSpec *failure, const Material *materi
   return stretch && !isnan(stretch->stretch) ? NAN : material->fracture_energy;
 }
 
-/** Adds what running cracks were measured to take and what loads feel, over the fracture energy.
- *  @param[in] planes  mean of plane cracks over the fracture energy */
+/** Adds the measured dissipation of running cracks and the measured work of loads, over the fracture energy.
+ *  @param[in] planes  mean dissipation of plane cracks over the fracture energy */
 static void toughness_add_measured(const ToughnessBlock *t, double planes, Text *text)
 {
   const CrackWake *w = &t->wake;
   if (!t->criterion) return;
   if (!w->is_known) {
-    text_add(text, "; what running cracks take beyond that has not been measured");
+    text_add(text, "; the energy that running cracks take has not been measured");
     return;
   }
   text_add(text,
@@ -102,7 +102,7 @@ static bool toughness_is_told(const Domain *d, int block)
 
 enum { TOUGHNESS_DIRECTIONS = 7 };
 
-/** Finds axis or diagonal number k. @return false if it does not lie in the plane of the body */
+/** Computes axis or diagonal number k. @return false if the direction is not in the plane of the body */
 static bool toughness_direction(int k, int dimensions, double n[3])
 {
   static const double directions[TOUGHNESS_DIRECTIONS][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0},
@@ -112,8 +112,8 @@ static bool toughness_direction(int k, int dimensions, double n[3])
   return dimensions == 3 || v[2] == 0;
 }
 
-/** Adds what links across the axes and diagonals take, whose damage ends where the planes that cost least take the
- *  fracture energy (formulation/micropolar_damage_laws.c). */
+/** Adds the dissipation of links across axes and diagonals. The damage law of links is set for the planes of lowest
+ *  dissipation (formulation/micropolar_damage_laws.c). */
 static void toughness_add_links(const Domain *d, const ToughnessBlock *t, Text *text)
 {
   const int dimensions = d->body.dimensions;
@@ -131,7 +131,7 @@ static void toughness_add_links(const Domain *d, const ToughnessBlock *t, Text *
            d->body.blocks[t->block.block]->head.name, most / least);
 }
 
-/** Adds what a lattice of bonds that crush carries if pressed along its axes and diagonals. */
+/** Adds the band of compressive strengths of a lattice of crushing bonds along its axes and diagonals. */
 static void toughness_add_crushing(const Domain *d, const Region *region, int block, const Material *m,
                                    const Units *units, Text *text)
 {

@@ -29,7 +29,7 @@ struct CrackBlock {
   const Family *family;
   const Influence *influence;
   int block;
-  const Lattice *lattice; /* of the block */
+  const Lattice *lattice; /* lattice of the block */
 };
 
 /** Returns the length over which a plane crack spreads a fracture energy (FormulationType.crack_length).

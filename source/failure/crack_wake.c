@@ -3,13 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Relative distance of horizons that count as equal, and that as much as another lattice counts. */
+/* Relative difference of horizons that count as equal; relative difference that another type of lattice counts as. */
 static const double crack_wake_same = 0.02, crack_wake_lattice = 0.1;
 
-/* Results of bench/toughness.py in plane stress at a Poisson ratio of 0.2, cracks along 0, 26.6 and 45 degrees of square
- * lattices and 0 of hexagonal ones. Bonds of hybrid hold, one by one, more than all of them hold, as points have members
- * in common: those that break book about half of the fracture energy. A limit by which they book all of it would make
- * loads feel 2.6 times the fracture energy. */
+/* Results of bench/toughness.py in plane stress at a Poisson ratio of 0.2: cracks along 0, 26.6 and 45 degrees of
+ * square lattices and 0 degrees of hexagonal ones. Points of hybrid bonds have members in common, so that the sum of
+ * the energies of single bonds exceeds the energy of the body: broken bonds account for about half of the fracture
+ * energy. A limit by which they account for all of it would raise the work of loads to 2.6 times the fracture
+ * energy. */
 static const struct {
   const char *formulation, *criterion, *lattice;
   double spacings, taken[2], felt[2];

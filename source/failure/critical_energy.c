@@ -139,9 +139,10 @@ typedef struct Judgement {
   double held, limit;
 } Judgement;
 
-/** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect.
- *  @param[in] ask_all  asks formulations for all that a bond holds, by one thread, as they hide the bond meanwhile;
- *                      otherwise a bond exceeds its limit if it may */
+/** Judges a bond. A bond beyond its limit exceeds half of the limit at one of its ends: only the slice of that end must
+ *  be a suspect.
+ *  @param[in] ask_all  true: queries formulations for the whole energy of the bond, serial, because they hide the bond
+ *                      meanwhile; false: such a bond counts if its force states exceed a tenth of the limit */
 static Judgement judge(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
                        bool ask_all)
 {
@@ -156,7 +157,7 @@ static Judgement judge(const Failure *failure, const Family *f, int64_t slice, i
   const double own = half_energy(failure, f, slice, slot, lane, bond);
   if (!held && own < limit / 2 * (1 - 1e-12)) return (Judgement){0};
   const int64_t there = bond->neighbour / SLICE;
-  const bool alike = failure->region[there] == failure->region[slice]; /* both halves are equal but for round-off */
+  const bool alike = failure->region[there] == failure->region[slice]; /* both halves are equal up to round-off */
   if (held && alike && own < small * limit / 2 * (1 - 1e-6)) return (Judgement){0};
   const int64_t back = family_slot(f, bond->neighbour, (int32_t)place);
   const Bond turned = family_bond(f, there, back, bond->neighbour % SLICE);
@@ -169,8 +170,8 @@ static Judgement judge(const Failure *failure, const Family *f, int64_t slice, i
   return (Judgement){all > limit * volumes, all, limit * volumes};
 }
 
-/** Marks a slice with a bond beyond its limit, by its formulation's own fast test where it has one; by all threads. A bond
- *  of one region is judged from its first end only. */
+/** Marks a slice as suspect if a bond exceeds its limit, by the fast test of its formulation if there is one.
+ *  Collective. A bond within one region is judged from its first end only. */
 static double suspect(const Failure *failure, const Family *f, int64_t slice, uint8_t *suspects)
 {
   const FailureRegion *own = &failure->regions[failure->region[slice]];

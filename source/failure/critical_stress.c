@@ -68,7 +68,8 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   return load_of(failure, f, slice, slot, bond, lane) > 1;
 }
 
-/** Returns the tension, or the shear by the ratio of the two strengths where the shear is nearer to its strength. */
+/** Returns the tension; if the shear is nearer to its strength, the shear times tensile strength over shear
+ *  strength. */
 static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
                       double *limit)
 {

@@ -74,13 +74,13 @@ typedef struct Criterion {
   /** True if this bond exceeds it. */
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                   int lane);
-  /** Returns the value of a bond that the criterion compares with a limit, both in `dimension`.
+  /** Returns the value of a bond and the limit with which the criterion compares it, both in `dimension`.
    *  @param[out] limit  infinite for bonds that never break */
   double (*measure)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                     int lane, double *limit);
   const char *quantity; /* name of the value */
-  int power;            /* the energy of a bond grows with the value to this power */
-  /** Returns the energy that a bond holds at its limit. NULL: unknown. */
+  int power;            /* exponent of the value in the energy of a bond */
+  /** Returns the energy of a bond at its limit. NULL: unknown. */
   double (*energy_at_limit)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, int lane);
 } Criterion;
 

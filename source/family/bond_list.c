@@ -8,7 +8,7 @@ typedef struct Build {
   const Family *family;
   const int32_t *material, *stiffness;
   const uint8_t *foreign;
-  uint8_t *mixed; /* [places] 1: some neighbours are of another stiffness; NULL without `stiffness` */
+  uint8_t *mixed; /* [places] 1: some neighbours have another stiffness; NULL without `stiffness` */
 } Build;
 
 static int32_t stored_neighbour(const Family *f, int64_t slot, int lane)
@@ -30,7 +30,7 @@ static bool owns_stored(const Build *b, int64_t slice, int64_t slot, int lane)
   return there > slice * SLICE + lane || is_foreign(b, there);
 }
 
-/** Marks the places of a slice that have neighbours of another stiffness, which stand in other blocks. */
+/** Marks the places of a slice that have neighbours of another stiffness. Such neighbours are in other blocks. */
 static void bond_list_mark_mixed(void *context, int64_t slice)
 {
   const Build *b = context;
@@ -44,7 +44,7 @@ static void bond_list_mark_mixed(void *context, int64_t slice)
     }
 }
 
-/** Common neighbours of both ends of a bond by material. */
+/** Number of common neighbours of both ends of a bond by material. */
 typedef struct AroundBond {
   int32_t material[16], stiffness[16], count[16];
   int found;
@@ -71,8 +71,8 @@ static int bond_list_alike_around(const AroundBond *around, int k)
   return sum;
 }
 
-/** Returns the material of another stiffness that is the most frequent among common neighbours of both ends of a bond,
- *  of the most frequent stiffness, or -1 if all are as stiff as the bond. */
+/** Returns the most frequent material among the common neighbours of both ends of a bond whose stiffness differs from
+ *  the bond's. Of several stiffnesses the most frequent one counts. Returns -1 if all neighbours are as stiff. */
 static int32_t bond_list_material_around(const Build *b, int64_t slice, int lane, int32_t there)
 {
   const Family *f = b->family;
@@ -92,7 +92,7 @@ static int32_t bond_list_material_around(const Build *b, int64_t slice, int lane
   return around.found ? around.material[best] : -1;
 }
 
-/** Returns the material of the second row of an owned bond, or that of the slice: there is none. */
+/** Returns the material of the second row of an owned bond, or the material of the slice if there is no second row. */
 static int32_t other_material(const Build *b, int64_t slice, int64_t slot, int lane)
 {
   const Family *f = b->family;
@@ -154,7 +154,7 @@ static void count_slice(void *context, int64_t slice)
   b->list->single_first[slice + 1] = single;
 }
 
-/** Fills the second rows of a slice that are of one material. @param[in,out] single, row  next entry and row */
+/** Fills the second rows of a slice for one material. @param[in,out] single, row  next entry and row */
 static void bond_list_fill_second(const Build *b, int64_t slice, int32_t material, int64_t *single, int64_t *row)
 {
   const Family *f = b->family;
@@ -255,8 +255,8 @@ static int bond_list_fill(Build *b, Error *error)
   if (l->count > INT32_MAX - SLICE)
     return error_add(
         error, BRECCIA_USER_ERROR,
-        "%lld bonds are more than laws with a history can be kept for; at most %d: take a shorter horizon or a "
-        "wider spacing",
+        "%lld bonds are too many for laws with a history, which allow %d; take a shorter horizon or a wider "
+        "spacing",
         (long long)l->count, INT32_MAX - SLICE);
   l->owned = memory_zeroed((size_t)l->owned_first[slices], sizeof *l->owned, "list of bonds", error);
   l->single = memory_zeroed((size_t)l->single_first[slices], sizeof *l->single, "list of bonds", error);

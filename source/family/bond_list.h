@@ -3,9 +3,9 @@
  *
  * A bond has its row in the slice of its end with the lower place, its owner. Rows of a slice: eight for each of its lattice slots that lead
  * to higher places, lane by lane (also where a lane has no bond); then one for each stored bond of which it is the owner; then a second one
- * for each of these that joins two materials, for the material of the other end. Where the owner of the list asks for
- * `stiffness`, bonds of one stiffness whose ends have common neighbours of another one have a second row, too, for the
- * material of these: lattice bonds as well as stored ones.
+ * for each of these bonds that joins two materials, for the material of the other end. If `stiffness` is given, a bond
+ * between ends of one stiffness with common neighbours of another stiffness has a second row, too, for the material of
+ * these neighbours. This holds for lattice bonds and for stored bonds.
  * Always true: rows first[s] .. first[s + 1] - 1 are those of slice s; rows of one material in one slice lie side by side, the owner's first. */
 #ifndef BRECCIA_FAMILY_BOND_LIST_H
 #define BRECCIA_FAMILY_BOND_LIST_H
@@ -20,8 +20,8 @@ typedef struct BondList {
   int64_t *owned_first;  /* [slices + 1] entries of `owned` */
   uint16_t *owned;       /* lattice slots that have rows, counted from the first slot of their slice */
   int64_t *single_first; /* [slices + 1] entries of `single` */
-  /** Stored bonds that have rows: 8 (slot - first slot of the slice) + lane; second rows, also of lattice bonds: -1 less
-   *  that. */
+  /** Stored bonds with rows: 8 (slot - first slot of the slice) + lane. A negative entry -1 - x is the second row of
+   *  bond x, which may be a lattice bond. */
   int32_t *single;
   int32_t *single_material; /* [entries of `single`] material of the row */
   uint8_t *pairs_lattice;   /* [slices] 1: some lattice bonds of the slice have second rows; NULL: none in any slice */
@@ -30,26 +30,27 @@ typedef struct BondList {
    *  first of them have row [0] + lane, the others [1] + lane. */
   int32_t (*slot_row)[2]; /* with BOND_LIST_SPARE entries behind the last */
   int32_t *stored_row;    /* [stored_slots + FAMILY_AHEAD][8] the row of the owner's material */
-  /** [stored_slots][8] second row of the bond: of the other end's material, or -2 less the row of a material around the
-   *  bond; -1: none; NULL: there is one material. */
+  /** [stored_slots][8] second row of the bond: row for the material of the other end, or -2 - (row for a material
+   *  around the bond); -1: none. NULL: there is one material. */
   int32_t *partner_row;
 } BondList;
 
-/** What rows of bonds depend on beside families. */
+/** Data besides families from which the rows of bonds are made. */
 typedef struct BondListOf {
   const int32_t *material; /* [slices] */
-  /** [slices] equal numbers: materials of one stiffness. NULL: only bonds that join two materials have second rows. */
+  /** [slices] equal numbers: materials of equal stiffness. NULL: only bonds that join two materials have second
+   *  rows. */
   const int32_t *stiffness;
-  /** [slices] 1: not of those to whom the list belongs. Of bonds with a foreign end the other one is the owner, and
-   *  they have one row. NULL: there are none */
+  /** [slices] 1: the slice does not belong to the owner of the list. A bond with a foreign end has one row, owned by
+   *  the other end. NULL: there are none. */
   const uint8_t *foreign;
 } BondListOf;
 
 int bond_list_create(BondList *list, const Family *family, const BondListOf *of, Error *error);
 void bond_list_destroy(BondList *list);
 
-/** Finds the rows of the bond of a lane: of the law of this end and of that at the other end, the same one if there is no
- *  second row. Of ends of one stiffness the second row is that of the other material around. */
+/** Finds the two rows of the bond of a lane: for the law of this end and for the law of the other end; equal if there
+ *  is no second row. Between ends of equal stiffness the second row is that of the other material around the bond. */
 void bond_list_rows(const BondList *list, const Family *family, int64_t slice, int64_t slot, int lane, int64_t rows[2]);
 
 /** Slot and lane of a row of a slice. @return whether it is a second row */

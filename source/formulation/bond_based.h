@@ -43,7 +43,7 @@ struct BondBased {
   const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   const Influence *influence;
-  bool strength_of_body; /* tensile strengths that decks give are those of the body, not of bonds */
+  bool strength_of_body; /* tensile strengths of the deck are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */
   double *per_stress;      /* [blocks] c / E */
@@ -55,7 +55,7 @@ struct BondBased {
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   double *around; /* [places][12] strains of families (bond_lateral.c); NULL: no law reads the pressure across bonds */
-  uint8_t *range; /* [slices] how large stretches were at the last evaluation */
+  uint8_t *range; /* [slices] range of the stretches of the last evaluation */
   uint8_t *gaps;  /* [slices] 1: bonds are missing (stretch_has_gaps) */
   BondResist *resist_springs;
   const BondPointSweeps *point_sweeps;
@@ -90,18 +90,19 @@ enum { BOND_SHOWN = STRETCH_SHOWN };
 int64_t bond_stretch(void *formulation, const Sweep *sweep);
 int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep);
 
-/** Elongation of bonds by the pressure across them (bond_lateral.c): what it takes, after bonds of a slice have broken,
- *  and the phase that finds the strains of families. Nothing happens where no law reads it. */
+/** Elongation of bonds by the pressure across them (bond_lateral.c): creation of the work array, its update after bonds
+ *  of a slice have broken, and the phase that finds the strains of families. Without laws that read the pressure the
+ *  functions do nothing. */
 int bond_lateral_create(BondBased *b, Error *error);
 void bond_lateral_renew(const BondBased *b, int64_t slice);
 size_t bond_lateral_bytes(const BondBased *b);
 int64_t bond_lateral_strains(void *formulation, const Sweep *sweep);
-/** Finds the elongation of the bonds of a batch of rows. @param[out] sweep  strain[1] */
+/** Computes the elongation by pressure of the bonds of a batch of rows. @param[out] sweep  strain[1] */
 void bond_lateral_rows(const BondBased *b, const Sweep *sweep);
-/** Returns the elongation of a bond of a place; 0 where no law reads it. */
+/** Returns the elongation by pressure of a bond of a place; 0 if no law reads it. */
 double bond_lateral(const BondBased *b, int64_t place, const Bond *bond);
-/** Returns the elongation along a unit vector by what an elastic solid of bonds presses across it at a strain; 0 where
- *  that pulls. */
+/** Returns the elongation of a bond along a unit vector by the elastic stress across it at a strain; 0 if this stress
+ *  is tensile. */
 double bond_elongation_of_pressure(Space space, const double strain[6], const double n[3]);
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */

@@ -1,9 +1,9 @@
-/* Elongation of bonds by the pressure across them, for laws that damage bonds by what they are stretched beyond it. The
- * strain of the families of both ends, as Green-Lagrange strain of their deformation gradients less the free strain,
- * has the elastic stress of a solid of bonds
+/* Elongation of bonds by the pressure across them, for laws whose damage depends on the strain beyond this elongation.
+ * The strain of a bond is the mean over the families of both ends: the Green-Lagrange strain of their deformation
+ * gradients less the free strain. An elastic solid of bonds has at this strain the stress
  *   sigma / E = s (strain + tr(strain) / 2 I),   s = 3/4 in plane stress (nu = 1/3), 4/5 else (nu = 1/4).
- * What it presses across a bond elongates the bond by Poisson's effect: nu times minus the sum of the stresses
- * across. */
+ * The elongation by Poisson's effect is -nu times the sum of the two stresses across the bond over E, if that sum is
+ * negative. */
 #include "base/memory.h"
 #include "base/tensor.h"
 #include "formulation/bond_based.h"
@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-/** Numbers of a place: inverse of its shape tensor, strain of its family. */
+/** Numbers stored for a place: inverse of its shape tensor, and strain of its family. */
 enum { LATERAL_INVERSE = 0, LATERAL_STRAIN = 6, LATERAL_NUMBERS = 12 };
 
 void bond_lateral_renew(const BondBased *b, int64_t slice)
@@ -22,7 +22,7 @@ void bond_lateral_renew(const BondBased *b, int64_t slice)
     if (b->particles->number[place] < 0) continue;
     const ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
     double *row = b->around + LATERAL_NUMBERS * place;
-    /* Families that know no strain press across nothing. */
+    /* Families without a regular shape tensor have no strain, and so no pressure across their bonds. */
     if (shape.mode == SHAPE_REGULAR)
       memcpy(row + LATERAL_INVERSE, shape.inverse, sizeof shape.inverse);
     else
@@ -72,7 +72,7 @@ double bond_elongation_of_pressure(Space space, const double strain[6], const do
                trace = strain[XX] + strain[YY] + (space == SPACE_3D ? strain[ZZ] : 0);
   double along = trace / 2, sum = trace * (space == SPACE_3D ? 2.5 : 2);
   for (int k = 0; k < 6; ++k) along += strain[k] * n[symmetric_row[k]] * n[symmetric_column[k]] * (k < 3 ? 1 : 2);
-  if (space == SPACE_PLANE_STRAIN) sum += sum / 4; /* across the plane */
+  if (space == SPACE_PLANE_STRAIN) sum += sum / 4; /* stress across the plane */
   const double across = stiffness * (sum - along);
   return across < 0 ? -poisson * across : 0;
 }

@@ -1,10 +1,10 @@
-/* Strength of a body of softening bonds: what an infinite body carries at most that is pulled along one direction and
- * free across it, over what one bond carries at most; and what it carries at most if pressed, over the compressive
- * strength of its law. Slanted bonds still gain when those along the pull have begun to
- * soften, so that the body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
+/* Strength of a body of softening bonds: largest stress of an infinite body under uniaxial tension with free sides,
+ * over the largest stress of one bond. The file also computes the largest stress in uniaxial compression, over the
+ * compressive strength of the law. The stress of slanted bonds still increases when bonds along the pull have begun to
+ * soften, so that a body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
  *   sigma = 1/2 sum (c / E) w L sigma_b(n . e n) n n
- * over the bonds of a particle, with the stress sigma_b of the law. Of particles from a file the sum is the mean over
- * families inside. */
+ * over the bonds of a particle, with the stress sigma_b of the law. For particles from a file the sum is the mean over
+ * families inside the block. */
 #include "base/linear.h"
 #include "base/memory.h"
 #include "base/tensor.h"
@@ -15,30 +15,30 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* STRENGTH_TURNS are iterations by tangents; by the elastic stiffness there may be more. Of particles from a file so
- * many families count. */
+/* STRENGTH_TURNS: iterations with tangents; STRENGTH_ELASTIC_TURNS: iterations with the elastic stiffness.
+ * STRENGTH_FAMILIES: number of families whose mean represents particles from a file. */
 enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 40, STRENGTH_ELASTIC_TURNS = 400, STRENGTH_FAMILIES = 8, PARTS = 6 };
 
 /* Increments of the pull, as a share of the strain at which the law begins to soften; the pull ends where the stress
  * has fallen to this share of the peak. Stresses across the pull vanish to this share of the peak. */
 static const double strength_increment = 0.02, strength_fallen = 0.9, strength_side_tolerance = 1e-9;
 
-/* Increments of the pressure, as a share of strength over Young's modulus. Stresses across vanish to this share of the
- * strength. */
+/* Increment of the pressure over the ratio of strength to Young's modulus. Stresses across the pressure vanish up to
+ * `crushing_side_tolerance` times the strength. */
 static const double crushing_increment = 0.05, crushing_side_tolerance = 1e-4;
 
-/** Bonds of a particle of an infinite body. Parts of strain and stress: along the pull, across it, and the shear
- *  between both; in space along the second direction across, and the other two shears. */
+/** Bonds of a particle of an infinite body. Components of strain and stress: along the pull, across it, and the shear
+ *  between both; in space also along the second direction across, and the other two shears. */
 typedef struct StrengthBonds {
   const Material *material;
   Space space;
   int count, parts;
-  double *share[PARTS], *weight; /* [count] bond strain of a unit part; (c / E) w L / 2 */
-  double *direction[3];          /* [count] of the bond, along the pull and across it */
+  double *share[PARTS], *weight; /* [count] bond strain of a unit component; (c / E) w L / 2 */
+  double *direction[3]; /* [count] direction cosines of the bond with the pull and with the directions across */
   double *strain, *stress, *tangent, *length, *lateral, *committed, *trial;
 } StrengthBonds;
 
-/** A strain and its stress, by parts. */
+/** A strain and its stress, by components. */
 typedef struct StrengthState {
   double strain[PARTS], stress[PARTS];
 } StrengthState;
@@ -88,7 +88,7 @@ static void strength_turn(const double n[3], double across[2][3])
     across[1][k] = n[(k + 1) % 3] * across[0][(k + 2) % 3] - n[(k + 2) % 3] * across[0][(k + 1) % 3];
 }
 
-/** Sets the shares and the weight of bond k. @param[in] rows  directions of the pull and across it */
+/** Sets the shares and the weight of bond k. @param[in] rows  directions along the pull and across it */
 static void strength_take(StrengthBonds *s, int k, const double xi[3], double length, double weight,
                           const double *const rows[3])
 {
@@ -107,7 +107,7 @@ static void strength_take(StrengthBonds *s, int k, const double xi[3], double le
   s->length[k] = s->material->length;
 }
 
-/** Takes the bonds of families in the middle of a block of particles from a file. */
+/** Adds the bonds of families in the middle of a block of particles from a file. */
 static bool strength_take_cloud(StrengthBonds *s, const BondBased *b, int block, const double *const rows[3])
 {
   const Family *f = b->family;
@@ -115,7 +115,7 @@ static bool strength_take_cloud(StrengthBonds *s, const BondBased *b, int block,
   int64_t places[STRENGTH_FAMILIES];
   const int families = whole_families_in_the_middle(b->body, f, block, LEAST_FILLED, STRENGTH_FAMILIES, places);
   double volume = 0;
-  for (int turn = 0; turn < 2; ++turn) { /* first counted, then taken */
+  for (int turn = 0; turn < 2; ++turn) { /* the first turn counts bonds, the second stores them */
     int bonds = 0;
     for (int n = 0; n < families; ++n) {
       const int64_t place = places[n], slice = place / SLICE;
@@ -168,7 +168,7 @@ static bool strength_begin(StrengthBonds *s, const BondBased *b, int block, cons
   return true;
 }
 
-/** Finds the stress of a strain. @return false if the law could not be integrated */
+/** Computes the stress of a strain. @return false if the law could not be integrated */
 static bool strength_try(StrengthBonds *s, StrengthState *state)
 {
   breccia_batch batch = {.size = sizeof batch,
@@ -203,8 +203,9 @@ static void strength_commit(StrengthBonds *s)
   s->trial = held;
 }
 
-/** Corrects the parts across the pull by a stiffness of the bonds: tangents above 0, or the elastic one.
- *  @return false if that stiffness resists no correction */
+/** Corrects the strain components across the pull with a stiffness of the bonds: positive tangents, or elastic
+ *  stiffness.
+ *  @return false if that stiffness is singular */
 static bool strength_correct(const StrengthBonds *s, bool elastic, StrengthState *state)
 {
   const double young = material_young(s->material);
@@ -221,8 +222,8 @@ static bool strength_correct(const StrengthBonds *s, bool elastic, StrengthState
   return true;
 }
 
-/** Solves for the parts of strain at which stresses across the pull vanish.
- *  @return false if the law could not be integrated, or iterations do not converge */
+/** Solves for the strain components for which stresses across the pull vanish.
+ *  @return false if the law could not be integrated, or if the iteration does not converge */
 static bool strength_solve_sides(StrengthBonds *s, double tolerance, StrengthState *state)
 {
   for (int turn = 0; turn < STRENGTH_TURNS + STRENGTH_ELASTIC_TURNS; ++turn) {

@@ -8,11 +8,11 @@
  * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families in which a
  * factor has fallen before.
  *
- * Where control fades with yielding, and influence falls with distance, a point whose law yields and does not soften
- * keeps the smaller of the stiffness left and
+ * If control fades with yielding and the influence decreases with distance, a point whose law yields without softening
+ * takes the smaller of s : e / e : C_0 : e and
  *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
- * Slip lines are narrower than families: their motion is one of which the strain sees a part, and the rest would be
- * resisted by control beside the strength of the law.
+ * Slip lines are narrower than families. The strain of a family contains a part of the motion of a slip line; control
+ * would resist the other part in addition to the strength of the law.
  *
  * Each point has its own factor for all its bonds, so that z stays what is left by the best fit, and forces follow from an energy. A step takes the
  * factors that were committed with the one before: forces are then linear in what they were, and the tangent symmetric. */
@@ -23,9 +23,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double most_stored = 0.125;  /* of the energy with which a law begins to soften, for control */
-static const double most_resisted = 0.05; /* of the shear stress of a law that yields, by control */
-static const double roundings = 1e-6;     /* points with all their stiffness but this have lost none */
+static const double most_stored = 0.125;  /* share of the energy at the onset of softening that control may store */
+static const double most_resisted = 0.05; /* share of the shear stress of a yielding law that control may carry */
+static const double roundings = 1e-6;     /* loss of stiffness below which a point counts as intact */
 
 /** Of a slice. */
 enum { TRIED = 1, SOFTENED = 2, BESIDE = 4 }; /* a factor was below 1 in some trial; is below 1; is so of a neighbour */
@@ -212,10 +212,11 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const do
   return lanes_set(0.5) * sum;
 }
 
-/** Shares of control with which four points whose laws have yielded hold motions that their strain does not see by no
- * more than `most_resisted` of their shear stress q = sqrt(J_2): f G sqrt(2 w / G) = most_resisted q, where w is what
- * control would store per volume, so that sqrt(2 w / G) is the shear strain that would store as much.
- * @param[in] stored  [4] w */
+/** Returns the shares of control for four points whose laws have yielded. Control then resists motions outside of the
+ * strain with at most `most_resisted` of the shear stress q = sqrt(J_2):
+ *   f G sqrt(2 w / G) = most_resisted q,
+ * where sqrt(2 w / G) is the shear strain that would store the energy w.
+ * @param[in] stored  [4] w, energy per volume that the unreduced control would store */
 LANES_INLINE Lanes resisting_share(const Material *m, const Sweep *sweep, int64_t here, Lanes stored)
 {
   Lanes stress[6], squares = {0};

@@ -116,7 +116,8 @@ typedef struct Sweep {
   double *carry; /* [CARRY][BATCH] numbers that one phase leaves for a later one: they need never leave the cache */
   /** Strains that are found and stresses that are answered, in a linearised step their changes: [6][places of the batch] of points on
    *  particles. Of points on bonds [1][rows], of a batch of rows of one material; first .. last is then their slice.
-   *  Where points take it (Points.takes_lateral), strain[1] is the elongation by pressure across the bond. */
+   *  If points read lateral elongations (Points.takes_lateral), strain[1] is the elongation by pressure across the
+   *  bond. */
   double *strain[6], *stress[6];
   int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
   int rows;
@@ -160,8 +161,8 @@ struct FormulationType {
   double horizon;                /* in spacings, where the deck gives none; 0: 3.015 */
   bool row_sums;                 /* neighbours read sums along lattice rows */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
-  bool knows_hooke; /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
-  /** Points whose particles are of two stiffnesses are laminates: both materials have a point there. */
+  bool knows_hooke; /* the formulation finds strains and stresses of points on bonds itself if all laws are Hooke's */
+  /** Points whose members have two stiffnesses are laminates: each of the two materials has a point there. */
   bool laminates;
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
@@ -254,16 +255,16 @@ struct FormulationType {
    * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
    *  @return NaN for particles that stand in no lattice */
   double (*crack_length)(const void *formulation, int block, const double normal[3]);
-  /** Returns what the inside of a block carries at most where it is pulled along a unit vector and free across it, over
-   * what its softening law carries as prepared. NULL: the law's own.
-   *  @return NaN for bars and lines, and laws that do not soften or are in servers */
+  /** Returns the strength of the inside of a block under uniaxial tension along a unit vector with free sides, over the
+   * strength of its softening law as prepared. NULL: equal to the strength of the law.
+   *  @return NaN for bars and lines, and for laws that do not soften or are in servers */
   double (*uniaxial_strength)(const void *formulation, int block, const double direction[3]);
-  /** Returns what the lattice of a block carries at most where it is pressed along a unit vector and free across it, over
-   * the compressive strength of its law. NULL: nobody knows.
-   *  @return NaN for particles that stand in no lattice, laws that tell no such strength or are in servers */
+  /** Returns the strength of the lattice of a block in uniaxial compression along a unit vector with free sides, over
+   * the compressive strength of its law. NULL: unknown.
+   *  @return NaN for particles outside of lattices, and for laws that report no such strength or are in servers */
   double (*uniaxial_crushing)(const void *formulation, int block, const double direction[3]);
-  /** Returns true if the tensile strength of a law that softens along bonds is that of the body, so that bonds take a
-   * share of it (domain/tensile_strength.h). NULL: it is that of bonds. */
+  /** Returns true if the tensile strength of a law that softens along bonds is the strength of the body, so that bonds
+   * take a share of it (domain/tensile_strength.h). NULL: the strength is that of bonds. */
   bool (*strength_of_body)(const void *formulation);
   /** Critical stretch of bonds with which a plane crack takes a fracture energy, by the integrals of a continuum. NULL:
    * none follows from it. */

@@ -239,8 +239,9 @@ static void describe(const void *formulation, const Units *units, Text *text)
     text_add(text, "; a horizon of 1.5 or 2.015 spacings is stiffer against short waves, and costs less");
   text_add(text, "\n");
   if (hybrid_laminate_crosses_rows(h))
-    text_add(text, "  interfaces of two materials cross rows of particles: the stiffer layer acts up to 0.4 spacings "
-                   "thinner along them, and in shear the softer one up to a spacing thinner at contrasts of 1000\n");
+    text_add(text,
+             "  interfaces of two materials cross rows of particles: the stiffer layer acts up to 0.4 spacings "
+             "thinner along them, and in shear the softer layer 1 to 2 spacings thinner, both at a contrast of 1000\n");
 }
 
 extern const FormulationType formulation_bond_based;

@@ -7,8 +7,8 @@
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
  *   G = sum over C in S of u_C (x) g_C,
  * a least-squares fit over S that is made exact along the bond, so that G xi = eta and no pattern of short waves goes unseen (docs/theory.md 5).
- * Points are the rows of the region's bond list; a bond whose members are of two materials has two rows, which are the
- * parts of a laminate.
+ * Points are the rows of the region's bond list. A bond whose members have two materials has two rows, the two parts of
+ * a laminate.
  *
  * Bonds of a lattice slot whose members all stand in the same lattice have their geometry in a table of distinct ones: members are lattice vectors from the
  * owner A, and all of them but A are neighbours of A, so that the bases of A's slots lead to eight members at once. What a slice's points exert is
@@ -94,17 +94,17 @@ typedef struct HybridPlanes {
   bool full;                          /* there is a particle in every place */
 } HybridPlanes;
 
-/** Part that one material has of a point whose members are of two: a laminate of layers across a normal (docs/theory.md
- *  5.8). The strain of the part is E + sym(a (x) n), where E is the strain of the bond and
+/** Part of one material in a point whose members have two materials: a laminate of layers across a normal
+ *  (docs/theory.md 5.8). With the strain E of the bond, the strain of the part is E + sym(a (x) n), where
  *    a = (stretch E_nn + poisson (tr E - E_nn)) n + 2 slide (E n - E_nn n). */
 typedef struct HybridLaminate {
-  int32_t own, other;             /* materials: of the row, and of the other part */
-  double normal[3];               /* unit vector n of the layers, from `own` to `other` */
+  int32_t own, other;             /* materials of the row and of the other part */
+  double normal[3];               /* unit vector n across the layers, from `own` to `other` */
   double plane;                   /* distance of the interface from the owner of the bond along n [length] */
-  double share;                   /* of the laminate in the point, 0 where no normal can be told .. 1 */
-  double apart;                   /* volume fraction of the material where no normal can be told */
-  double stretch, poisson, slide; /* coefficients of a, by the bonds that are intact */
-  double fraction;                /* volume fraction of the material, by the bonds that are intact */
+  double share;                   /* weight of the laminate in the point, from 0 (no normal can be found) to 1 */
+  double apart;                   /* volume fraction of the material if no normal can be found */
+  double stretch, poisson, slide; /* coefficients of a for the intact bonds */
+  double fraction;                /* volume fraction of the material for the intact bonds */
 } HybridLaminate;
 
 typedef struct Hybrid Hybrid;
@@ -160,17 +160,17 @@ struct Hybrid {
   int32_t (
       *reaching)[2]; /* [slices] the first stripe and the last that exert something on it; first > last: none does */
 
-  int64_t listed;    /* rows, those of single bonds first */
-  int64_t *row;      /* [listed] */
-  int64_t *first;    /* [listed + 1] of the members of a row */
-  int32_t *member;   /* places: of each row the owner of its bond, the other end, then those that both see */
-  double (*g)[3];    /* [members] 0 of those that a broken bond hides */
-  double (*area)[3]; /* [listed] */
+  int64_t listed;    /* number of rows, those of single bonds first */
+  int64_t *row;      /* [listed] index of the row in the bond list */
+  int64_t *first;    /* [listed + 1] index of the first member of a row */
+  int32_t *member;   /* places of the members of each row: owner of the bond, other end, common neighbours of both */
+  double (*g)[3];    /* [members] vectors g; 0 for members that a broken bond hides */
+  double (*area)[3]; /* [listed] section of the bond */
   double *volume;    /* [listed] 0: there is no bond */
-  int32_t *layer;    /* [listed] index of its laminate, or -1; NULL: there are none */
+  int32_t *layer;    /* [listed] index of the laminate of a row, or -1; NULL: there are no laminates */
   HybridLaminate *laminate;
   int32_t laminates, laminate_room;
-  double (*contact)[4]; /* [places] while rows are made: hybrid_laminate_contacts; else NULL */
+  double (*contact)[4]; /* [places] result of hybrid_laminate_contacts while rows are made; else NULL */
   uint8_t *idle;      /* [listed] 1: it carries nothing: no bond, a broken one, or its members span no space any more */
   int64_t *met_first; /* [places + 1] of the listed rows that a place is a member of, or NULL: none are listed */
   struct HybridMet {
@@ -181,7 +181,7 @@ struct Hybrid {
   double *force;
   double *shown;      /* [places][LANES] displacements, for the same reason; NULL: no rows are listed */
   double (*tried)[3]; /* [most members of a listed row] for geometries that are tried out, by one thread */
-  double (*tried_from)[3], *tried_weight; /* [most members of a listed row] while vectors are found, by one thread */
+  double (*tried_from)[3], *tried_weight; /* [largest number of members of a row] work arrays for vectors g; serial */
 };
 
 /** Where a row stands. */
@@ -199,7 +199,7 @@ typedef struct HybridView {
   int count;
   const int32_t *member;
   const double (*g)[3];
-  const HybridLaminate *laminate; /* or NULL */
+  const HybridLaminate *laminate; /* laminate of the row, or NULL */
   double area[3], volume;
   HybridLaminate tried_laminate;
   int32_t near[HYBRID_NEAR];
@@ -267,42 +267,43 @@ static inline int hybrid_vector(const Hybrid *h, int block, int64_t slice, int64
 
 /* ---- points at interfaces of two materials (hybrid_laminate.c) ---- */
 
-/** Finds how places touch particles of another stiffness: sum of the vectors to nearest ones, and of their lengths.
- *  Nothing happens where the body has one stiffness. */
+/** Computes the contact of places with particles of another stiffness: sum of the vectors to the nearest ones, and
+ *  sum of their lengths. Does nothing if the body has one stiffness. */
 int hybrid_laminate_contacts(Hybrid *h, Error *error);
-/** Makes the laminate of a listed row whose bond has two rows of unlike stiffness; others have none. */
+/** Makes the laminate of a listed row if its bond has two rows of unlike stiffness. */
 int hybrid_laminate_create(Hybrid *h, int64_t number, Error *error);
 /** Returns the laminate of a listed row, or NULL. */
 static inline const HybridLaminate *hybrid_laminate(const Hybrid *h, int64_t number)
 {
   return h->layer && h->layer[number] >= 0 ? &h->laminate[h->layer[number]] : NULL;
 }
-/** Members of a point, as its vectors g are made. */
+/** Members of a point, as input to its vectors g. */
 typedef struct HybridMembers {
   int count;
   const int32_t *member;
-  const double *weight;    /* [count] of the fit; 0: hidden */
+  const double *weight;    /* [count] weights of the least-squares fit; 0: hidden */
   const double (*from)[3]; /* [count] distance from the owner */
 } HybridMembers;
-/** Finds the volume fraction and the coefficients of a laminate by its members, and takes from their vectors g what a
- *  kink of the displacement at the interface would make of strains in its plane.
+/** Computes the volume fraction and the coefficients of a laminate from its members. Also removes from their vectors g
+ *  the strain in the plane of the interface that a kink of the displacement would cause.
  *  @param[in,out] g  [count] */
 void hybrid_laminate_weigh(const Hybrid *h, const HybridMembers *of, HybridLaminate *laminate, double (*g)[3]);
-/** Returns the weight in the fit of a member of another material than both ends of the bond. */
+/** Returns the weight in the fit of member n if its material differs from the materials of both ends of the bond. */
 double hybrid_laminate_alike(const Hybrid *h, const int32_t *member, int n, const HybridLaminate *laminate);
-/** Returns true if interfaces of two materials turn from bond to bond, as where they cross rows of particles. */
+/** Returns true if the normals of interfaces differ from bond to bond, for example where interfaces cross rows. */
 bool hybrid_laminate_crosses_rows(const Hybrid *h);
-/** Turns the strain of a bond into that of a part. @param[in] laminate  or NULL @param[in] free  strain without stress,
- *  alike in all directions; 0 for changes of strain */
+/** Transforms the strain of a bond to the strain of a part. @param[in] laminate  or NULL @param[in] free  isotropic
+ *  strain without stress; 0 for increments of strain */
 void hybrid_laminate_strain(const Hybrid *h, const HybridLaminate *laminate, double free, double strain[6]);
-/** Turns the stress of a part, or its change, into what acts on the strain of the bond, its transpose. */
+/** Transforms the stress of a part, or its increment, to the bond by the transpose of the strain transformation. */
 void hybrid_laminate_stress(const Hybrid *h, const HybridLaminate *laminate, double stress[6]);
-/** Turns a tangent of a part into that of the bond. @param[in,out] tangent  [6][6] */
+/** Transforms a tangent of a part to the tangent of the bond. @param[in,out] tangent  [6][6] */
 void hybrid_laminate_tangent(const Hybrid *h, const HybridLaminate *laminate, double tangent[36]);
-/** Returns the free strain of a bond as laws take it, the mean of both ends. */
+/** Returns the free strain of a bond for its laws, the mean of both ends. */
 double hybrid_laminate_free(const Hybrid *h, const int32_t *member);
-/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
- *  @return false where it is as flat as no strain can be found in */
+/** Inverts a symmetric tensor. In the plane, the function first sets the component across the plane to the mean of the
+ *  two in the plane, and the shears across to 0.
+ *  @return false if an eigenvalue is below 1e-6 of the largest: the tensor then gives no strain */
 bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
 
 /** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */

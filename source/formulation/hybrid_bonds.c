@@ -42,7 +42,7 @@ int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *e
 
 /* ---- forces between two particles ---- */
 
-/** Finds the stress of a part as it was in the state at which a step is linearised, and its change in the step. */
+/** Finds the stress of a part in the state at which a step is linearised, and its increment in the step. */
 static void find_change(const Hybrid *h, int64_t row, const HybridView *view, const double g0[9], const double g[9],
                         double held[6], double stress[6])
 {
@@ -288,15 +288,15 @@ void hybrid_even_stress(const void *formulation, const uint8_t *marked, double *
 
 /* ---- what people see of particles ---- */
 
-/** Returns true if a row is the part of a laminate that another material than that of a place has. */
+/** Returns true if a row is the part of a laminate whose material differs from the material of a place. */
 static bool is_other_part(const Hybrid *h, const HybridRow *at, int64_t place)
 {
   const HybridLaminate *laminate = at->listed >= 0 ? hybrid_laminate(h, at->listed) : NULL;
   return laminate && laminate->share > 0 && laminate->own != h->material[place / SLICE];
 }
 
-/** Finds the means of the strains and stresses of the points on a place's bonds, by their volumes; of laminates those of
- *  the place's own material. */
+/** Computes the means of strain and stress over the points on a place's bonds, weighted by volume. A laminate
+ *  contributes the part of the place's own material. */
 static void find_means(const Hybrid *h, int64_t place, double strain[6], double stress[6])
 {
   double whole = 0;

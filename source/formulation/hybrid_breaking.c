@@ -50,7 +50,7 @@ typedef struct PointInStep {
   double now[6];            /* strain at its end, by the members that it began with */
 } PointInStep;
 
-/** Returns by how much the free strain of a point grows in the step. */
+/** Returns the increment of the free strain of a point in the step. */
 static double growth_of(const Hybrid *h, const HybridView *view)
 {
   const double *growth = h->particles->free_growth;

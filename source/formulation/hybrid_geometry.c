@@ -55,9 +55,9 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
   return true;
 }
 
-/** Finds the vectors g of the members of a listed row by the bonds that are intact now.
- *  @param[out] laminate  of the row; NULL: the row is no laminate
- *  @return false: there is none, and the point carries nothing */
+/** Computes the vectors g of the members of a listed row for the bonds that are intact now.
+ *  @param[out] laminate  laminate of the row; NULL: the row is no laminate
+ *  @return false if no vectors exist; the point then carries nothing */
 static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate)
 {
   const Particles *p = h->particles;
@@ -342,7 +342,7 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   const bool halves = is_foreign(h->foreign, bond.neighbour) ||
                       (rows[0] != rows[1] &&
                        material_is_as_stiff(points_material(h->points, rows[0]), points_material(h->points, rows[1])));
-  const double share = halves ? 0.5 : 1; /* laminates share later */
+  const double share = halves ? 0.5 : 1; /* laminates are divided later (take_part) */
   double own[3], their[3];
   times(shape[owner][XX] > 0 ? shape[owner] : shape[bond.neighbour], bond.xi, own);
   times(shape[bond.neighbour][XX] > 0 ? shape[bond.neighbour] : shape[owner], bond.xi, their);
@@ -353,8 +353,8 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   }
 }
 
-/** Takes the part of a bond's section and volume that the material of a listed row has in its laminate.
- *  @return false: none */
+/** Reduces section and volume of a bond to the part of the material of a listed row in its laminate.
+ *  @return false if that part is empty */
 static bool take_part(Hybrid *h, int64_t number, const HybridLaminate *laminate)
 {
   if (!laminate) return true;

@@ -1,10 +1,10 @@
 /* Hybrid points at interfaces: laminates of two materials (docs/theory.md 5.8).
  *
- * Where the members of a bond are of two materials, the displacement has a kink between them, a max(0, n . x - d) beside
- * a linear part. The vectors g make phi a (x) n of the kink, so that phi is the volume fraction of the second material
- * that the strain of the bond knows. Both materials have a point there, with the strains of the parts of a laminate of
- * that fraction: continuous in the plane of the interface, with continuous traction by the first moduli. A state that
- * is uniform in both layers is then exact, across the interface and along it. */
+ * If the members of a bond have two materials, the displacement has a kink a max(0, n . x - d) in addition to a linear
+ * part. The vectors g map the kink to the gradient phi a (x) n, so that phi is the volume fraction of the second
+ * material in the strain of the bond. Each material has a point there, with the strain of its part in a laminate of
+ * that fraction: strains are continuous in the plane of the interface, and the traction is continuous for the initial
+ * moduli. A state that is uniform in both layers is then exact, across the interface and along it. */
 #include "formulation/hybrid.h"
 
 #include "base/memory.h"
@@ -14,7 +14,7 @@
 
 /** Moduli of a material in the body's space. */
 typedef struct LaminateModuli {
-  double lame, shear, across; /* across: of a strain along the normal, lame + 2 shear */
+  double lame, shear, across; /* across: modulus of a strain along the normal, lame + 2 shear */
 } LaminateModuli;
 
 static LaminateModuli laminate_moduli(const Hybrid *h, int32_t material)
@@ -30,7 +30,7 @@ static int32_t laminate_material(const Hybrid *h, int64_t place)
   return h->material[place / SLICE];
 }
 
-/** Returns true if a place is nearer to one material than to another by the logarithm of Young's moduli. */
+/** Returns true if Young's modulus of a place is nearer to that of `one` than of `other`, on a logarithmic scale. */
 static bool laminate_is_of(const Hybrid *h, int64_t place, int32_t one, int32_t other)
 {
   const int32_t own = laminate_material(h, place);
@@ -40,7 +40,7 @@ static bool laminate_is_of(const Hybrid *h, int64_t place, int32_t one, int32_t 
          fabs(young - log(material_young(&h->materials[other])));
 }
 
-/** Returns the spacing of the particles around a place by its volume. */
+/** Returns the spacing of the particles around a place, computed from its volume. */
 static double laminate_spacing(const Hybrid *h, int64_t place)
 {
   const double volume = h->particles->volume[place] / body_section(h->body);
@@ -54,9 +54,10 @@ static double laminate_step(double low, double high, double x)
   return t * t * (3 - 2 * t);
 }
 
+/** Adds the vectors from a place to its nearest neighbours of another stiffness, and their lengths, to `contact`. */
 static void laminate_find_contact(const Hybrid *h, int64_t place, double contact[4])
 {
-  const double near = 1.15, far = 1.4; /* spacings: all nearest neighbours, and no diagonal of a square lattice */
+  const double near = 1.15, far = 1.4; /* [spacings] between nearest neighbours and diagonals of a square lattice */
   const Family *f = h->family;
   const int64_t slice = place / SLICE;
   const Material *own = &h->materials[laminate_material(h, place)];
@@ -76,7 +77,7 @@ static void laminate_find_contact(const Hybrid *h, int64_t place, double contact
 int hybrid_laminate_contacts(Hybrid *h, Error *error)
 {
   const Particles *p = h->particles;
-  if (!h->bonds->pairs_lattice) return BRECCIA_OK; /* one stiffness */
+  if (!h->bonds->pairs_lattice) return BRECCIA_OK; /* all materials have one stiffness */
   h->contact = memory_zeroed((size_t)p->places, sizeof *h->contact, "interfaces of bonds", error);
   h->layer = memory_zeroed((size_t)h->listed, sizeof *h->layer, "interfaces of bonds", error);
   if (!h->contact || !h->layer) return BRECCIA_FAILURE;
@@ -86,11 +87,11 @@ int hybrid_laminate_contacts(Hybrid *h, Error *error)
   return BRECCIA_OK;
 }
 
-/** Sets the normal of a laminate, from the nearest neighbours on both sides of the interface, and how far it can be
- *  told: vectors of all directions have a sum of 0. */
+/** Sets the normal of a laminate from the nearest neighbours on both sides of the interface, and the confidence in the
+ *  normal: vectors in all directions have a sum of 0. */
 static void laminate_set_normal(const Hybrid *h, const int32_t *member, int count, HybridLaminate *l)
 {
-  const double none = 0.2, sure = 0.45; /* a plane across a diagonal of a cube has 0.58 */
+  const double none = 0.2, sure = 0.45; /* length of the sum over sum of lengths; a diagonal plane of a cube has 0.58 */
   double sum[3] = {0}, lengths = 0, square = 0;
   for (int n = 0; n < count; ++n) {
     const double sign = laminate_is_of(h, member[n], l->own, l->other) ? 1 : -1, *contact = h->contact[member[n]];
@@ -102,7 +103,8 @@ static void laminate_set_normal(const Hybrid *h, const int32_t *member, int coun
   for (int k = 0; k < 3; ++k) l->normal[k] = square > 0 ? sum[k] / sqrt(square) : k == 0;
 }
 
-/** Sets the distance of the interface from the owner, between the outermost members on both sides. */
+/** Sets the distance of the interface from the owner. The interface divides the gap between the nearest members on both
+ *  sides in proportion to their spacings. */
 static void laminate_set_plane(const Hybrid *h, const int32_t *member, int count, HybridLaminate *l)
 {
   double *const *x = h->particles->position;
@@ -122,7 +124,7 @@ static void laminate_set_plane(const Hybrid *h, const int32_t *member, int count
   l->plane = (low * above + high * below) / (below + above);
 }
 
-/** Returns the volume fraction of the own material where no normal can be told: ends stand in series. */
+/** Returns the volume fraction of the own material if no normal can be found: both ends are in series. */
 static double laminate_apart(const Hybrid *h, const int32_t *member, const HybridLaminate *l)
 {
   const int32_t first = laminate_material(h, member[0]), second = laminate_material(h, member[1]);
@@ -166,13 +168,13 @@ double hybrid_laminate_alike(const Hybrid *h, const int32_t *member, int n, cons
   return laminate ? laminate->share + (1 - laminate->share) * alike : alike;
 }
 
-/** Kink of the displacement at the interface, and what its least-squares fit leaves. */
+/** Kink of the displacement at the interface, and the residual of its least-squares fit. */
 typedef struct LaminateKink {
-  double mean, slope[3]; /* of the fit */
-  double square;         /* of what is left, weighted */
+  double mean, slope[3]; /* coefficients of the fit */
+  double square;         /* weighted sum of squares of the residual */
 } LaminateKink;
 
-/** Returns how far the kink counts, 1 but for moduli that are nearly alike, which leave no kink. */
+/** Returns the weight of the kink: 1, but less for nearly equal moduli, which cause no kink. */
 static double laminate_contrast(const Hybrid *h, const HybridLaminate *l)
 {
   const double some = 0.3; /* logarithm of the ratio of Young's moduli */
@@ -180,13 +182,13 @@ static double laminate_contrast(const Hybrid *h, const HybridLaminate *l)
                        fabs(log(material_young(&h->materials[l->own]) / material_young(&h->materials[l->other]))));
 }
 
-/** Value of the kink at a member: its distance beyond the interface, seen from the own material. */
+/** Returns the kink at a member: the distance of the member beyond the interface, seen from the own material. */
 static double laminate_kink(const HybridLaminate *l, const double from[3])
 {
   return fmax(0, from[0] * l->normal[0] + from[1] * l->normal[1] + from[2] * l->normal[2] - l->plane);
 }
 
-/** What a member's kink has beside its fit. @param[in] middle  of the members */
+/** Returns the residual of the kink's fit at a member. @param[in] middle  mean position of the members */
 static double laminate_rest(const HybridLaminate *l, const LaminateKink *kink, const double from[3],
                             const double middle[3])
 {
@@ -222,7 +224,7 @@ static bool laminate_fit_kink(const Hybrid *h, const HybridMembers *of, const Hy
   return true;
 }
 
-/** Finds the coefficients of a by the fraction of the own material. */
+/** Computes the coefficients of a from the fraction of the own material. */
 static void laminate_set_coefficients(const Hybrid *h, HybridLaminate *l, double own_part)
 {
   const LaminateModuli own = laminate_moduli(h, l->own), other = laminate_moduli(h, l->other);
@@ -235,7 +237,7 @@ static void laminate_set_coefficients(const Hybrid *h, HybridLaminate *l, double
 
 void hybrid_laminate_weigh(const Hybrid *h, const HybridMembers *of, HybridLaminate *l, double (*g)[3])
 {
-  const double flat = 1e-12; /* square of what is left of a kink that is linear, over that of the bond's length */
+  const double flat = 1e-12; /* residual of a linear kink, squared, over the square of the bond's length */
   LaminateKink kink;
   double middle[3], made[3] = {0}, along = 0, whole = 0, length = 0;
   l->fraction = l->apart;
@@ -262,8 +264,8 @@ void hybrid_laminate_weigh(const Hybrid *h, const HybridMembers *of, HybridLamin
 
 bool hybrid_laminate_crosses_rows(const Hybrid *h)
 {
-  const double straight = 1e-6; /* of the cosine; rounding of positions in files is below */
-  const double most = 0.1;      /* share of points at ends of interfaces */
+  const double straight = 1e-6; /* tolerance of the cosine, above round-off of positions in files */
+  const double most = 0.1;      /* largest share of points at ends of interfaces */
   int64_t alike = 0, turned = 0;
   for (int32_t n = 1; n < h->laminates; ++n) {
     const HybridLaminate *l = &h->laminate[n], *before = l - 1;
@@ -278,12 +280,13 @@ bool hybrid_laminate_crosses_rows(const Hybrid *h)
 
 /* ---- strains and stresses of a part ---- */
 
-/** E n, n . E n and the rest of the trace of a symmetric tensor. */
+/** Vector E n, component n . E n, and the other part of the trace of a symmetric tensor E. */
 typedef struct LaminateParts {
   double along[3], normal, rest;
 } LaminateParts;
 
-/** @param[in] shear  of the components xy yz zx that is the tensor's: 0.5 of strains, 1 of stresses */
+/** Computes E n, n . E n and the other part of the trace.
+ *  @param[in] shear  factor on the components xy yz zx: 0.5 for strains, 1 for stresses */
 static LaminateParts laminate_parts(const HybridLaminate *l, const double tensor[6], double shear, bool plane_stress)
 {
   LaminateParts parts = {{0}, 0, tensor[XX] + tensor[YY] + (plane_stress ? 0 : tensor[ZZ])};
@@ -313,7 +316,7 @@ void hybrid_laminate_strain(const Hybrid *h, const HybridLaminate *l, double fre
 
 void hybrid_laminate_stress(const Hybrid *h, const HybridLaminate *l, double stress[6])
 {
-  if (!l || h->pairwise) return; /* ends of pairwise bonds take the mean stress of both parts */
+  if (!l || h->pairwise) return; /* pairwise bonds apply the mean stress of both parts to their ends */
   const bool plane_stress = h->points->plane_stress;
   const LaminateParts s = laminate_parts(l, stress, 1, plane_stress);
   for (int k = 0; k < 6; ++k) {
@@ -329,7 +332,7 @@ void hybrid_laminate_tangent(const Hybrid *h, const HybridLaminate *l, double ta
 {
   double turned[6][6];
   if (!l) return;
-  for (int j = 0; j < 6; ++j) { /* T for columns: stresses of unit strains of the bond */
+  for (int j = 0; j < 6; ++j) { /* columns of T: stresses of unit strains of the bond */
     double unit[6] = {0};
     unit[j] = 1;
     hybrid_laminate_strain(h, l, 0, unit);

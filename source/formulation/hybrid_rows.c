@@ -82,7 +82,7 @@ HybridRows hybrid_rows(const Hybrid *h, int64_t place)
   return (HybridRows){.place = place, .slot = h->family->first[place / SLICE] - 1};
 }
 
-/** Moves to the next slot of the place whose bond has rows. @return false if no slot is left */
+/** Advances to the next slot of the place whose bond has rows. @return false if there is none */
 static bool next_slot(const Hybrid *h, HybridRows *rows)
 {
   const Family *f = h->family;

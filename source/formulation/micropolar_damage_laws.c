@@ -51,7 +51,7 @@ static double mean_crossing(const Micropolar *m, int block)
   return m->constants[block].crossed * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
 }
 
-/** Returns the length over which a plane crack spreads a fracture energy, as if the law of links were that of points. */
+/** Returns the length over which a plane crack spreads a fracture energy, treating links as points with this law. */
 double micropolar_crack_length(const void *formulation, int block, const double normal[3])
 {
   const Micropolar *m = formulation;

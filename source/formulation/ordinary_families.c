@@ -16,12 +16,13 @@
  * edge, bonds on one side only have products n_x n_y of one sign. Components of H count by their multiplicities, so
  * that nothing depends on the axes.
  *
- * With S isotropic in every family beams of few rows would bend too much: bonds at a face have their middles inside of
- * the face, where the strain of bending is less. Families at a surface therefore keep a share a of the anisotropy r
- * that they have without factors, and the other incomplete families j beside them take the opposite of what they keep:
+ * With S isotropic in every family, beams of few rows would bend too much: the middle of a bond at a face is inside of
+ * the face, where the strain of bending is less. A family i at a surface therefore keeps a share a of its anisotropy
+ * r_i without factors. The other incomplete families j around it take the opposite:
  *   sum q H / sum q = T,  T_i = a g_i r_i at the surface,  T_j = -sum_i a g_i r_i V_i / (sum of V_j of family i).
- * The surface is stiffer and the layers below are softer by as much, so that tension stays right and bending, which
- * weighs by the square of the distance, gets what it lacks. In bodies that have no layers below g is 0. */
+ * The surface becomes stiffer, and the layers below become softer by the same amount. Tension is unchanged. Bending,
+ * which weights stiffness by the square of the distance, becomes stiffer as required. In bodies without layers below
+ * the surface g is 0. */
 #include "formulation/ordinary.h"
 
 #include "base/lanes.h"
@@ -39,8 +40,9 @@ enum { MOST_TERMS = 15, TERM_ROOM = 16, TURNS = 5 };
 static const double damping = 0.03;          /* c, beside a trace of A of 0.8 in space and 0.6 in the plane */
 static const double most_taken = 0.5;        /* share of its factor that a family takes off a bond in one turn */
 static const double factors[2] = {0.05, 10}; /* limits of s */
-static const double kept = 0.6;              /* a */
-static const double below_surface = 0.21, at_surface = 0.3; /* shares of its volume that a family lacks there */
+static const double kept = 0.6;              /* a, share of the anisotropy that a surface family keeps */
+static const double below_surface = 0.21,
+                    at_surface = 0.3; /* missing share of volume of a family: onset; full effect */
 
 /** A component of H. */
 typedef struct FamilyTerm {
@@ -59,8 +61,8 @@ typedef struct FamilyBalance {
   int32_t *wish;       /* [places] */
   double *x;           /* [wishes][TERM_ROOM] */
   double *own, *goal;  /* [wishes][TERM_ROOM] r and T */
-  double *surface;     /* [places] 1: as at a surface, 0: as below or inside */
-  double *given;       /* [places] a g V over the volume of those that take the opposite */
+  double *surface;     /* [places] weight from 0, below the surface or inside, to 1, at the surface */
+  double *given;       /* [places] a g V over the volume of the families that take the opposite */
 } FamilyBalance;
 
 static void families_list_terms(FamilyBalance *b)
@@ -251,7 +253,7 @@ static void families_wish(void *context, int64_t place)
   for (int t = 0; t < MOST_TERMS && least < -most_taken; ++t) x[t] *= most_taken / -least;
 }
 
-/** Gives an image the components of H of its original, turned as the image is.
+/** Reflects the components of H of an original for its image.
  *  @param[in,out] of  [wishes][TERM_ROOM] */
 static void families_mirror(const FamilyBalance *b, int64_t place, double *of)
 {
@@ -297,7 +299,7 @@ static void families_change_slice(void *context, int64_t slice)
     }
 }
 
-/* ---- what they keep ---- */
+/* ---- anisotropy kept at surfaces ---- */
 
 /** Volume of a family inside a block with its particle: of its lattice, or the largest one of particles from a file,
  *  at most that of the horizon. */
@@ -309,7 +311,7 @@ static double families_inside_volume(const Ordinary *o, int block)
                          : whole_family_volume(o->body, o->family, block, 0) / WHOLE_FAMILY_SHARE;
 }
 
-/** Finds how much each family is one of a surface, by the share of its volume that is missing. */
+/** Computes the surface weight of each family from the share of its volume that is missing. */
 static void families_find_surface(const FamilyBalance *b)
 {
   const Ordinary *o = b->o;
@@ -325,7 +327,7 @@ static void families_find_surface(const FamilyBalance *b)
   }
 }
 
-/** Finds the anisotropy r of a family without factors. */
+/** Computes the anisotropy r of a family without factors. */
 static void families_find_own(void *context, int64_t place)
 {
   const FamilyBalance *b = context;
@@ -345,7 +347,7 @@ static void families_find_own(void *context, int64_t place)
   for (int t = 0; t < b->terms && total > 0; ++t) own[t] /= total;
 }
 
-/** Finds what a family keeps, over the volume of the families beside it that take the opposite. */
+/** Computes the anisotropy that a family keeps, over the volume of the neighbouring families that take the opposite. */
 static void families_find_given(void *context, int64_t place)
 {
   const FamilyBalance *b = context;
@@ -375,14 +377,14 @@ static void families_mirror_own(void *context, int64_t place)
     b->given[place] = b->given[p->place_of[body_original(b->o->body, p->number[place])]];
 }
 
-/** Adds a share of the anisotropy of a family to a goal. */
+/** Adds a share of the anisotropy of a family to a goal T. */
 static void families_add_own(const FamilyBalance *b, int64_t place, double share, double *goal)
 {
   const double *own = b->own + (int64_t)TERM_ROOM * b->wish[place];
   for (int t = 0; t < b->terms; ++t) goal[t] += share * own[t];
 }
 
-/** Finds the goal T of a family. */
+/** Computes the goal T of a family. */
 static void families_find_goal(void *context, int64_t place)
 {
   const FamilyBalance *b = context;

@@ -39,7 +39,7 @@ int whole_families_in_the_middle(const Body *body, const Family *family, int blo
     if (!whole_family_at(family, block, place, volume)) continue;
     int at = count < most ? count++ : most;
     double away[2] = {0};
-    for (; at > 0; --at) { /* nearer than the last of the list */
+    for (; at > 0; --at) { /* moves the place before all places that are farther from the middle */
       for (int n = 0; n < 2; ++n) away[n] = 0;
       for (int k = 0; k < 3; ++k) {
         away[0] += pow(p->position[k][place] - middle[k] / inside, 2);

@@ -16,8 +16,8 @@ double whole_family_volume(const Body *body, const Family *family, int block, do
 /** Returns true if a place stands in a block and its family has at least that volume. */
 bool whole_family_at(const Family *family, int block, int64_t place, double volume);
 
-/** Finds the places of a block whose families count as inside and which are nearest to the middle of all such places,
- *  whatever the order and the direction of the particles.
+/** Finds the places of a block with inside families that are nearest to the middle of all such places. The result does
+ *  not depend on the order or the direction of the particles.
  *  @param[in] least  share of the horizon that the largest family must fill
  *  @param[out] places  [most], the nearest first
  *  @return their number; 0 if no family counts as inside */

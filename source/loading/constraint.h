@@ -22,7 +22,7 @@ static inline int constraint_leaders(const Constraint *constraint)
 {
   return constraint->platen ? constraint->platen->leaders + constraint_is_loose(constraint) : 0;
 }
-/** Returns the share of the m-th leader of a platen in the motion of its n-th particle. */
+/** Returns the factor S with which the m-th leader of a platen contributes to the motion of its n-th particle. */
 static inline double constraint_share(const Constraint *constraint, int m, int64_t n)
 {
   const Platen *platen = constraint->platen;
@@ -34,7 +34,7 @@ static inline double constraint_part(const Constraint *constraint, int64_t n)
   if (constraint_is_loose(constraint)) return 0;
   return constraint->part ? constraint->part[n] : 1;
 }
-/** Returns where the n-th particle stood along the direction when the load began, besides what it follows. */
+/** Returns the position of the n-th particle along the direction when the load began, relative to what it follows. */
 static inline double constraint_from(const Constraint *constraint, int64_t n)
 {
   if (!constraint->from) return 0;

@@ -93,7 +93,7 @@ static double farther(double peak, double factor)
   return fabs(factor) > fabs(peak) ? factor : peak;
 }
 
-/** Calls for factors from time 0 up to a time, at its parts and corners. */
+/** Calls `one` with the factors from time 0 up to a time, at equidistant times and at corners of the history. */
 static void each_factor(const History *h, double time, void (*one)(void *context, double factor), void *context)
 {
   enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
@@ -132,7 +132,7 @@ static void take_less(void *context, double factor)
 
 double history_least(const History *h, double change, double time, double *factor)
 {
-  const double rises = 10; /* of a history that acts for a time that is not known */
+  const double rises = 10; /* rise times that are searched if the duration of the load is unknown */
   Least least = {.change = change, .value = INFINITY};
   if (type_of(h))
     each_factor(h, isfinite(time) ? time : rises * history_rise(h), take_less, &least);

@@ -82,11 +82,11 @@ bool history_is_controlled(const History *history);
 /** The factor that is farthest from zero from time 0 up to a time. */
 double history_peak(const History *history, double time);
 
-/** The smallest value of `1 + change * factor` from time 0 up to a time.
- *  @param[out] factor  the factor there */
+/** Returns the smallest value of `1 + change * factor` from time 0 up to a time.
+ *  @param[out] factor  factor for which the value is smallest */
 double history_least(const History *history, double change, double time, double *factor);
 
-/** The first time after another up to which its factor is smooth; INFINITY: there is none. */
+/** Returns the end of the smooth part of a history that follows a time; INFINITY: the history stays smooth. */
 double history_corner(const History *history, double time);
 
 /** Time that it takes to its largest value; 0: it is there at once. */

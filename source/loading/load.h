@@ -78,30 +78,33 @@ enum { MAX_LEADERS = 3 };
  *  direction of the constraint is
  *    u_i = (1 - sum_m S_im) U + sum_m S_im u_m
  *  with the prescribed motion U of the centre and the free motions u_m of one leading particle, in space of two. While
- *  a load that only presses has let go, U is free too, and one more particle leads. */
+ *  with the prescribed motion U of the centre and the free motions u_m of the leaders: one leading particle in the
+ *  plane, two in space. After a one-sided platen has let go, U is free, too, and one more particle leads. */
 typedef struct Platen {
-  int leaders; /* while U is prescribed */
-  /** Indices among the particles of the load; the one behind `leaders` leads once U is free. */
+  int leaders; /* number of leaders while U is prescribed */
+  /** Indices of the leaders among the particles of the load; the entry behind `leaders` leads once U is free. */
   int64_t leader[MAX_LEADERS];
   double *share[2];           /* [particles of the load] S_im. Owned */
-  double *loose[MAX_LEADERS]; /* [particles of the load] S_im once U is free; NULL: it never is. Owned */
+  double *loose[MAX_LEADERS]; /* [particles of the load] S_im once U is free; NULL: U is never free. Owned */
   double given;               /* acceleration of the centre at the end of the last step */
-  /** Change of velocity of the centre that strikes in the explicit step under way, in all and at its end; 0: none. */
+  /** Jump of the velocity of a centre that strikes in the current explicit step; part of it at the end of the step. 0:
+   *  none. */
   double strikes, still;
-  bool opens; /* it has let go in the explicit step under way */
-  /** It closes in the implicit step under way, with these motions of its centre at the end by the scheme. */
+  bool opens; /* the platen has let go in the current explicit step */
+  /** The platen closes in the current implicit step. Velocity and acceleration are those that the scheme gives the
+   *  centre at the end of the step. */
   bool closes;
   double velocity, acceleration;
 } Platen;
 
-/** What makes a constraint one-sided: it holds while it presses on the body and lets go where it would pull
- *  (loading/one_sided.h). A platen lets go as a whole and has one entry, else each particle has its own. */
+/** One-sided part of a constraint: the constraint holds while it presses on the body, and lets go where it would pull
+ *  (loading/one_sided.h). A platen lets go as a whole and has one entry; otherwise each particle has an entry. */
 typedef struct OneSided {
-  int64_t count;   /* of entries */
-  double pushes;   /* 1 or -1: along the direction of the constraint or against it */
-  uint8_t *open;   /* [count] 1: it has let go. Owned */
-  double *presses; /* [count] force with which it presses at the last equilibrium or implicit step. Owned */
-  double *found;   /* [count] the same at the last evaluation of forces; negative where it pulls. Owned */
+  int64_t count;   /* number of entries */
+  double pushes;   /* 1 or -1: the constraint pushes along its direction or against it */
+  uint8_t *open;   /* [count] 1: the entry has let go. Owned */
+  double *presses; /* [count] force with which an entry presses, 0 or more, at the last accepted step. Owned */
+  double *found;   /* [count] force at the last evaluation of forces; negative: the entry pulls. Owned */
 } OneSided;
 
 /** Motions prescribed to the particles of a load: u . direction = from + value times the history, or its integral, + share of that of
@@ -119,7 +122,7 @@ typedef struct Constraint {
   double share;          /* 1 or -1 */
   double *moved;         /* [particles of the load] in the step under way; with images or a platen only. Owned */
   Platen *platen;        /* NULL: the particles do not turn. Owned */
-  OneSided *one_sided;   /* NULL: it presses and pulls. Owned */
+  OneSided *one_sided;   /* NULL: the constraint presses and pulls. Owned */
 } Constraint;
 
 /** Particles whose motions along an axis are one. */
@@ -158,9 +161,9 @@ typedef struct LoadWords {
 typedef struct EvenStress {
   void (*find)(const void *domain, const uint8_t *marked, double *const area[3]);
   const void *domain;
-  /** Finds the force per volume that all particles bring along an axis in an even uniaxial stress of 1 along the axis.
+  /** Computes the force per volume on all particles along an axis in a uniform uniaxial stress of 1 along that axis.
    *  @param[out] force  [places]
-   *  @return BRECCIA_OK, or BRECCIA_FAILURE where there is no memory */
+   *  @return BRECCIA_OK, or BRECCIA_FAILURE if memory is exhausted */
   int (*pull)(void *model, int axis, double *force, Error *error);
   void *model;
 } EvenStress;
@@ -184,7 +187,7 @@ struct LoadType {
   bool lasting;    /* it acts from the first stage to the last */
   bool goes_on;    /* its forces were there before it began */
   bool platen;     /* a platen may stand between what it prescribes and its particles */
-  bool may_press;  /* it may be one that only presses */
+  bool may_press;  /* the type accepts 'only presses' */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
   void (*destroy)(Load *load);

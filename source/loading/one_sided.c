@@ -10,8 +10,8 @@
 
 /* ---- creation ---- */
 
-/** Adds the bonds of a particle to other particles of the body: V_i V_j xi along a direction, and the sizes of these
- * products. */
+/** Adds the bonds of a particle to other particles of the body: the sum of V_i V_j xi along a direction, and the sum of
+ * the absolute values of these products. */
 static void one_sided_add_bonds(const LoadMaking *making, int32_t i, const double direction[3], double *along,
                                 double *size)
 {
@@ -32,7 +32,7 @@ static void one_sided_add_bonds(const LoadMaking *making, int32_t i, const doubl
 
 int one_sided_find_side(const Load *load, const LoadMaking *making, const double direction[3])
 {
-  const double least = 0.6; /* of bonds across the outermost layer it is 1, of the two outermost 0.75, of three 0.45 */
+  const double least = 0.6; /* bonds of the outermost layer have a ratio of 1, of two layers 0.75, of three 0.45 */
   double along = 0, size = 0;
   for (int64_t n = 0; n < load->selection.count; ++n)
     one_sided_add_bonds(making, load->selection.places[n], direction, &along, &size);
@@ -40,7 +40,7 @@ int one_sided_find_side(const Load *load, const LoadMaking *making, const double
   return along > 0 ? 1 : -1;
 }
 
-/** Finds the only motion that a load prescribes, or says that there are several. */
+/** Returns the only motion that a load prescribes, or NULL after a message if there are several. */
 static Constraint *one_sided_find_constraint(const LoadMaking *making, const Load *load)
 {
   Loading *loading = making->loading;
@@ -90,7 +90,7 @@ int one_sided_create(const LoadMaking *making)
   int status = BRECCIA_OK;
   for (int l = 0; l < making->loading->count && status != BRECCIA_FAILURE; ++l) {
     const Load *load = &making->loading->loads[l];
-    if (!load->spec || !load->spec->only_presses || load->type->force) continue; /* springs see to it by themselves */
+    if (!load->spec || !load->spec->only_presses || load->type->force) continue; /* springs implement it themselves */
     Constraint *c = one_sided_find_constraint(making, load);
     const int bad = c ? one_sided_make(c, making) : BRECCIA_USER_ERROR;
     if (bad) status = bad;
@@ -116,7 +116,7 @@ void one_sided_close(const Constraint *c)
   }
 }
 
-/* ---- all of a stage ---- */
+/* ---- entries of a stage ---- */
 
 static bool one_sided_acts(const Loading *loading, const Constraint *c)
 {

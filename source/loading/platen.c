@@ -346,7 +346,7 @@ static void platen_solve(int count, double matrix[MAX_LEADERS][MAX_LEADERS], dou
   }
 }
 
-/** Divides generalised forces on the leaders, or momenta, by the masses of the plate, M_ab = sum_i m_i S_ia S_ib. */
+/** Divides generalised forces or momenta of the leaders by the mass matrix of the plate, M_ab = sum_i m_i S_ia S_ib. */
 static void platen_accelerate(const Constraint *c, const Particles *p, const double force[MAX_LEADERS],
                               double acceleration[MAX_LEADERS])
 {
@@ -390,7 +390,7 @@ void platen_start(const Constraint *c, const Particles *p, double time, double s
   }
 }
 
-/** Finds the accelerations of the leaders by the forces on all particles and the motion of the centre. */
+/** Computes the accelerations of the leaders from the forces on all particles and the motion of the centre. */
 static void platen_find_accelerations(const Constraint *c, const Particles *p, double acceleration[MAX_LEADERS])
 {
   const Platen *q = c->platen;
@@ -405,7 +405,7 @@ static void platen_find_accelerations(const Constraint *c, const Particles *p, d
   platen_accelerate(c, p, force, acceleration);
 }
 
-/** Returns true if a platen that moves as prescribed with these accelerations of the leaders pulls at its particles. */
+/** Returns true if a platen with prescribed motion and these accelerations of its leaders pulls on its particles. */
 static bool platen_pulls(const Constraint *c, const Particles *p, const double acceleration[MAX_LEADERS])
 {
   const Platen *q = c->platen;
@@ -424,7 +424,7 @@ static bool platen_pulls(const Constraint *c, const Particles *p, const double a
 void platen_push(const Constraint *c, Particles *p, double time)
 {
   Platen *q = c->platen;
-  const double step = 2 * c->load->motion.lag; /* none where forces are found again for a state that was restored */
+  const double step = 2 * c->load->motion.lag; /* 0 if forces are evaluated again for a restored state */
   if (step > 0) q->given = constraint_acceleration(c, time, step);
   double acceleration[MAX_LEADERS];
   platen_find_accelerations(c, p, acceleration);

@@ -19,19 +19,19 @@
  *          are prescribed; BRECCIA_FAILURE: no memory */
 int platens_create(const LoadMaking *making);
 void platen_destroy(Platen *platen);
-/** Finds the shares with which its particles move while the centre is free, with one more leader k of
+/** Computes the shares S of particles for a free centre, with one more leader k, from
  *    u_k = (1 - sum_m S_km) U + sum_m S_km u_m.
- *  @return BRECCIA_OK, or BRECCIA_FAILURE: no memory */
+ *  @return BRECCIA_OK, or BRECCIA_FAILURE if memory is exhausted */
 int platen_loosen(const Constraint *constraint, Error *error);
-/** Returns the displacement, or the rate of displacement, of the centre along the direction, by the leader that leads
- * once the centre is free.
+/** Returns the displacement or the rate of the centre along the direction, computed from the motions of all leaders,
+ * including the one that leads while the centre is free.
  *  @param[in] u, v  [motions][places] */
 double platen_centre_displacement(const Constraint *constraint, double *const *u);
 double platen_centre_rate(const Constraint *constraint, double *const *v);
-/** Returns the resultant on the centre of forces on the particles.
+/** Returns the resultant of forces on the particles at the centre of the plate.
  *  @param[in] f  [motions][places] forces */
 double platen_centre_force(const Constraint *constraint, double *const *f);
-/** Adds a force on the centre, once it is free, as forces on the leaders that do the same work.
+/** Adds a force on a free centre as work-equivalent forces on the leaders.
  *  @param[in,out] f  [motions][places] forces */
 void platen_add_centre_force(const Constraint *constraint, double *const *f, double force);
 

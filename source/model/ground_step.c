@@ -61,8 +61,8 @@ double ground_step_spacings(const Body *body, const Loading *loading)
   return highest > lowest ? (highest - lowest) / spacing : 0;
 }
 
-/** Returns true if nothing resists slip lines beside the strength of laws: control of zero-energy modes that fades with
- * yielding in all families. */
+/** Returns true if only the strength of laws resists slip lines: control of zero-energy modes fades with yielding in
+ * all families. */
 static bool ground_step_slips_freely(const Domain *d)
 {
   bool freely = true;
@@ -78,9 +78,11 @@ static bool ground_step_slips_freely(const Domain *d)
 
 double ground_step_excess(const Domain *d, double spacings)
 {
-  /* Vertical cuts of 8, 12 and 16 spacings came to 1.28, 1.25 and 1.20 of closed forms in ordinary families, one of 16
-   * to 1.29 or more where control keeps its stiffness: that excess falls as the root of the number at best. Where slip
-   * lines are free 8, 12 and 16 spacings came to 1.06, 1.04 and 1.034 (docs/choosing.md). */
+  /* Measured factors over closed forms (docs/choosing.md) for vertical cuts:
+   *   ordinary families            8, 12, 16 spacings   1.28, 1.25, 1.20
+   *   control with full stiffness  16 spacings          1.29 or more
+   *   control that fades           8, 12, 16 spacings   1.06, 1.04, 1.034
+   * The first two excesses decrease with the square root of the number of spacings at best. */
   const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.6;
   if (ground_step_slips_freely(d)) return fmin(freely_most, freely_spacings / spacings);
   return most * fmin(1, sqrt(few / spacings));

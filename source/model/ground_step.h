@@ -8,9 +8,9 @@
  * does not act, or memory is out. */
 double ground_step_spacings(const Body *body, const Loading *loading);
 
-/** Returns an estimate of the share by which the factor of safety of such a step comes out too high: at most 0.35, or
- * 0.1 where control of zero-energy modes fades with yielding.
- *  @param[in] spacings  of the step */
+/** Returns an estimate of the relative excess of the factor of safety for a step: at most 0.35, or 0.1 if control of
+ * zero-energy modes fades with yielding.
+ *  @param[in] spacings  height of the step in spacings */
 double ground_step_excess(const Domain *domain, double spacings);
 
 #endif

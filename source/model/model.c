@@ -155,7 +155,7 @@ static void even_stress(const void *domain, const uint8_t *marked, double *const
   domain_even_stress(domain, marked, area);
 }
 
-/** Sets the displacements of an even uniaxial stress along an axis, with a strain of the given size along the axis. */
+/** Sets the displacements of a uniform uniaxial stress along an axis, with the strain `size` along that axis. */
 static void set_even_pull(const breccia_model *model, int axis, double size, double *const displacement[3])
 {
   const Domain *d = &model->domain;
@@ -172,7 +172,7 @@ static void set_even_pull(const breccia_model *model, int axis, double size, dou
   }
 }
 
-/** Implements EvenStress.pull by an evaluation of forces; forces beside bonds are left out. */
+/** Implements EvenStress.pull by an evaluation of internal forces, without additional forces. */
 static int even_pull(void *context, int axis, double *force, Error *error)
 {
   const double size = 1e-7;
@@ -237,7 +237,7 @@ static bool has_initial_strains(const DeckSpec *spec)
   return has;
 }
 
-/** Refuses strength reductions that come to nothing while they act. */
+/** Refuses strength reductions whose factor is 0 or less while they act. */
 static int check_reductions(breccia_model *model)
 {
   int status = BRECCIA_OK;

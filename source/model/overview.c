@@ -32,8 +32,8 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
   return task;
 }
 
-/* Memory of a run besides the body, its formulations and its solver: the program with its libraries, and work arrays of
- * result files and last words (measured on bodies of all formulations, docs/performance.md). */
+/* Memory of a run besides body, formulations and solver: the program with its libraries, and work arrays of result
+ * files and of the summary. The values were measured on bodies of all formulations (docs/performance.md). */
 #define PROGRAM_BYTES 25e6
 #define PARTICLE_BYTES 112
 

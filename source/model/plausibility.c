@@ -308,7 +308,7 @@ double plausibility_wave_speed(const breccia_model *model)
   return wave_speed(model, main_material(model));
 }
 
-/** Adds what a cone does that leaves out its dilation or its tension cut-off: both then make ground too strong. */
+/** Adds the effects of a missing dilation or tension cut-off in the deck: both make ground with a cone too strong. */
 static void describe_cone(const breccia_model *model, const Material *m, Text *text)
 {
   const double degree = acos(-1) / 180, friction = plausibility_parameter(model, m, "friction angle"),
@@ -631,7 +631,7 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_damping(model);
 }
 
-/** Returns what brings factors of safety nearer to limit analysis than the formulation of a deck, as further words. */
+/** Returns advice, appended to a warning, that brings factors of safety nearer to limit analysis. */
 static const char *ground_step_remedy(const breccia_model *model)
 {
   const Domain *d = &model->domain;

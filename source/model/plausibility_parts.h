@@ -50,9 +50,9 @@ void plausibility_describe_middle(const breccia_model *model, const Load *load, 
 /** Adds a line on whether the patch that a load moves or holds in one direction can turn. */
 void plausibility_describe_platen(const breccia_model *model, const Load *load, Text *text);
 
-/** Adds a line on the side from which a load that only presses pushes. */
+/** Adds a line with the side from which a one-sided support pushes. */
 void plausibility_describe_pressing(const breccia_model *model, const Load *load, Text *text);
-/** Adds a line if nothing but supports that only press holds the body in the stage under way. */
+/** Adds a line if only one-sided supports hold the body in the current stage. */
 void plausibility_describe_lift(const breccia_model *model, Text *text);
 
 /** Warns where ground begins under stresses that nothing balances, or that its law does not bear. */

@@ -1,4 +1,4 @@
-/* Supports that only press: from which side, and whether anything else holds the body. */
+/* Input checks of one-sided supports: the side from which each pushes, and whether other supports hold the body. */
 #include "model/plausibility_parts.h"
 
 #include "solver/pieces.h"
@@ -13,7 +13,7 @@ static const Constraint *pressing_constraint(const Loading *loading, const Load 
   return NULL;
 }
 
-/** Adds a direction in words: "+y" along an axis, else its components. */
+/** Adds a direction as text: "+y" along an axis, otherwise its components. */
 static void pressing_add_direction(const double direction[3], double sign, Text *text)
 {
   for (int k = 0; k < 3; ++k)
@@ -37,8 +37,8 @@ void plausibility_describe_pressing(const breccia_model *model, const Load *load
                                 : ", and each particle lets go where it would be pulled\n");
 }
 
-/** Opens all one-sided supports, or puts them back.
- *  @param[in,out] kept  [entries] which are open */
+/** Opens all one-sided supports, or restores their flags.
+ *  @param[in,out] kept  [entries] saved flags of open entries */
 static void pressing_open_all(const Loading *loading, uint8_t *kept, bool back)
 {
   for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c) {

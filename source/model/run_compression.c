@@ -100,7 +100,7 @@ void run_add_compressions(const breccia_model *model, Text *t)
   text_add(t, "],\n");
 }
 
-/** Adds the laws of one strain that crush, for one that does not. */
+/** Adds the names of uniaxial laws that crush, as a remedy for a law that does not. */
 static void compression_add_remedy(const breccia_law *law, Text *t)
 {
   bool any = false;

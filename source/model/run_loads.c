@@ -114,7 +114,7 @@ static void run_loads_tell_force(const double force[3], double size, const char 
   text_add(t, "[%.4g, %.4g, %.4g]%s%s", v[0], v[1], v[2], *unit ? " " : "", unit);
 }
 
-/** Adds of how many particles a support that only presses has let go at the end. */
+/** Adds the number of particles that a one-sided support has let go at the end. */
 static void run_loads_tell_open(const Loading *loading, const Load *load, Text *t)
 {
   for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c) {
@@ -146,7 +146,7 @@ static void run_loads_tell_resultant(const breccia_model *model, const Load *loa
   text_add(t, "\n");
 }
 
-/** True if some stage up to the one under way has short steps, of which not all are looked at. */
+/** Returns true if a stage up to the current one has short steps of which only some are evaluated. */
 static bool run_loads_have_gaps(const Solver *s)
 {
   bool gaps = false;
@@ -154,15 +154,15 @@ static bool run_loads_have_gaps(const Solver *s)
   return gaps && resultants_interval(s) > 1;
 }
 
-/** True if a load is a spring between two parts of the body, on which its forces sum to nothing. */
+/** Returns true if a load is a spring between two parts of the body, whose forces on the body sum to zero. */
 static bool run_loads_is_between(const Load *load)
 {
   return load->type->exerts && load->other.count > 0;
 }
 
-/** Tells resultants of loads.
- *  @param[in] between  of springs between two parts of the body, or of all others
- *  @return the number of loads that are not told */
+/** Adds lines with the resultants of loads.
+ *  @param[in] between  true: only springs between two parts of the body; false: all other loads
+ *  @return number of loads without a line */
 static int run_loads_tell_resultants(const breccia_model *model, const Resultant *resultants, bool between, Text *t)
 {
   enum { FEW = 12 }; /* of more loads only those with names */

@@ -48,7 +48,7 @@ static void add_origin(const breccia_model *model, Text *t)
   text_add(t, "},\n");
 }
 
-/** Returns the bond that broke first; NULL if none did. @param[out] middle  of the bond, inside the body */
+/** Returns the bond that broke first; NULL if none did. @param[out] middle  midpoint of the bond inside the body */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
   if (!d->broken_count) return NULL;
@@ -57,7 +57,7 @@ static const BrokenBond *first_broken(const Domain *d, double middle[3])
   return bond;
 }
 
-/** Adds the bond that broke first with its cause, or null. */
+/** Adds the first broken bond with its cause, or null. */
 static void add_first_broken(const breccia_model *model, Text *text)
 {
   const Domain *d = &model->domain;
@@ -81,7 +81,7 @@ static void add_first_broken(const breccia_model *model, Text *text)
   text_add(text, "\"value\": %.10g, \"limit\": %.10g, \"unit\": \"%s\"},\n", first->value, first->limit, unit);
 }
 
-/** Adds how many bonds broke from other causes than the limit of the criterion, if any did. */
+/** Adds the number of bonds that broke for causes other than the failure criterion, if there are any. */
 static void add_other_causes(const Domain *d, const char *folder, Text *text)
 {
   int64_t counts[BREAK_CAUSES] = {0};

@@ -1,4 +1,4 @@
-/* Why the bonds of a result broke, in words: counts by cause, and a line for each bond that is asked for. */
+/* Report on broken bonds of a result: counts by cause, and a line for each requested bond. */
 #include "model/host.h"
 #include "model/sized.h"
 #include "results/broken_bonds.h"
@@ -25,7 +25,7 @@ static void why_count(const BondReasons *of, Text *text)
   text_add(text, "\n");
 }
 
-/** Adds one bond with its particles, position and reason. */
+/** Adds a line for one bond with its particles, position and reason. */
 static void why_bond(const ResultView *view, const BondReasons *of, const BondReason *bond, Text *text)
 {
   text_add(text, "step %lld, time %.6g %s, particles %lld and %lld at [", (long long)bond->step, bond->time,
@@ -42,7 +42,7 @@ static void why_bond(const ResultView *view, const BondReasons *of, const BondRe
                                       : "too few bonds were left at one of its ends");
 }
 
-/** Adds the bond between two particles. @return BRECCIA_USER_ERROR after a message if that bond did not break */
+/** Adds a line for the bond between two particles. @return BRECCIA_USER_ERROR after a message if it did not break */
 static int why_one(const ResultView *view, const BondReasons *of, const long long ends[2], Text *text, Error *error)
 {
   for (int64_t k = 0; k < of->count; ++k) {

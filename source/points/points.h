@@ -33,8 +33,8 @@ typedef struct Untouched Untouched;       /* rows that remember nothing yet (poi
 typedef struct Points {
   int components; /* 6 or 1; 0: there are no points, because all laws are linear */
   bool plane_stress;
-  bool on_bonds;      /* rows are those of a bond list; otherwise those of six components are places */
-  bool takes_lateral; /* of one component: strain[1] of updates is the elongation by pressure across (breccia_batch) */
+  bool on_bonds;      /* rows are those of a bond list; otherwise rows of points with six components are places */
+  bool takes_lateral; /* one component: strain[1] of updates is the elongation by pressure across (breccia_batch) */
   int64_t count;
   double *strain[6], *stress[6]; /* [count] of points of six components; NULL: points_keep_tensors */
   bool shares;                   /* these arrays, with other points */

@@ -51,7 +51,7 @@ int64_t points_ask_slopes(Points *points, int64_t first, int count, double *stra
 {
   const Material *m = points_material(points, first);
   breccia_batch batch;
-  double *const at[2] = {strain, NULL}; /* laws in servers are given no pressure across */
+  double *const at[2] = {strain, NULL}; /* laws in servers do not receive the pressure across bonds */
   points_make_batch(&batch, points, first, count, at, &stress);
   batch.tangent = slope;
   const int bad = material_update(m, &batch);

@@ -60,8 +60,9 @@ int broken_bonds_read(const ResultView *view, BondReasons *of, Error *error)
   int64_t count = 0, rows = 0;
   *of = (BondReasons){0};
   if (H5Lexists(view->file.id, reasons_path, H5P_DEFAULT) <= 0)
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "the results hold no reasons of broken bonds; this version of the program writes them: run again");
+    return error_add(
+        error, BRECCIA_USER_ERROR,
+        "the results contain no reasons of broken bonds; run the deck again with this version, which writes them");
   int64_t *pairs = result_view_numbers(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof *pairs, &count, error);
   double *reasons =
       pairs ? result_view_numbers(view, reasons_path, H5T_NATIVE_DOUBLE, sizeof *reasons, &rows, error) : NULL;

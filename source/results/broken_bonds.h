@@ -1,10 +1,10 @@
-/* Broken bonds in result files: which ones, when, where and why.
+/* Broken bonds in result files: ends, time, position and reason of each.
  *
  * Group Breccia of a file holds two datasets with one row for each broken bond, in the order in which the bonds broke:
  *   BrokenBonds        [count][3] step and numbers of both particles
- *   BrokenBondReasons  [count][7] time, cause, value, limit, position x, y, z (middle of the bond, inside the body)
- * Value and limit are those of the failure criterion and NaN for other causes. Attributes of BrokenBondReasons name the
- * columns, the causes, the criterion, its value and the unit. */
+ *   BrokenBondReasons  [count][7] time, cause, value, limit, position x, y, z (midpoint of the bond inside the body)
+ * Value and limit are those of the failure criterion, and NaN for other causes. Attributes of BrokenBondReasons name
+ * the columns, the causes, the criterion, its value and the unit of the value. */
 #ifndef BRECCIA_RESULTS_BROKEN_BONDS_H
 #define BRECCIA_RESULTS_BROKEN_BONDS_H
 
@@ -21,12 +21,12 @@ int broken_bonds_cut(hid_t own, int64_t count);
 
 /** One broken bond of a result file. */
 typedef struct BondReason {
-  int64_t step, particles[2]; /* particles: numbers as written, layers outside of supports included */
+  int64_t step, particles[2]; /* particles: numbers as written, including layers outside of supports */
   double time, value, limit, position[3];
   BreakCause cause;
 } BondReason;
 
-/** Broken bonds of a result file with the words of its attributes. */
+/** Broken bonds of a result file with the texts of its attributes. */
 typedef struct BondReasons {
   int64_t count;
   BondReason *bonds; /* [count] owned */

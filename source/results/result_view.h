@@ -30,7 +30,7 @@ typedef struct ResultView {
   char title[256], length_unit[64], time_unit[64];
 } ResultView;
 
-/** Returns the path of a result file, given itself or as its folder; to be freed. NULL: out of memory. */
+/** Returns the path of a result file, given as a file or as its folder; owned by the caller. NULL: out of memory. */
 char *result_view_path(const char *result);
 /** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged, BRECCIA_FAILURE where the disk fails */
 int result_view_open(ResultView *view, const char *path, Error *error);

@@ -12,7 +12,8 @@
 
 typedef struct Direct {
   Matrix matrix;
-  /** Number of broken bonds, pattern of additional forces and key of one-sided supports when the matrix was created. */
+  /** State at creation of the matrix: number of broken bonds, pattern of additional forces, key of one-sided
+   *  supports. */
   int64_t broken, pattern, open;
   Factors *factors;
   /** Residual, overwritten by its correction [matrix.size]. */
@@ -66,8 +67,8 @@ static void hold_lone_unknowns(Matrix *m)
   }
 }
 
-/** Creates matrix and factors again if bonds have broken since, if additional forces join other particles, or if
- * one-sided supports have let go or closed. */
+/** Creates matrix and factors again if bonds have broken since, if additional forces join other particles, or if the
+ * set of open one-sided supports has changed. */
 static int direct_renew(LinearSolver *s, Error *error)
 {
   Direct *d = s->own;

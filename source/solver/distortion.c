@@ -30,11 +30,11 @@ int64_t distortion_inverted(const Domain *d, int32_t *first)
   return count;
 }
 
-/** Returns true if the law of a particle, or the laws of its bonds in the mean, have lost so much of their stiffness
- * that next to nothing hinders the particle from being turned inside out. Laws that flow keep theirs. */
+/** Returns true if a particle has lost so much stiffness that it can invert without resistance. The stiffness is
+ * that of the particle's law, or the mean over the laws of its bonds. Laws that flow keep their stiffness. */
 static bool distortion_may_be_spent(const Domain *d, int32_t place)
 {
-  const double damage = 0.5, mean_damage = 0.1; /* of a point, of all bonds of a family */
+  const double damage = 0.5, mean_damage = 0.1; /* thresholds: of a point; mean over all bonds of a family */
   const Points *points = &domain_region(d, place)->points;
   const Material *m = &d->materials[d->material[place / SLICE]];
   const double most = points_on_particles(points) ? damage : mean_damage;

@@ -13,8 +13,8 @@ int64_t distortion_inverted(const Domain *domain, int32_t *first);
 
 /** Fails if particles that still carry load are turned inside out, or if particles with bonds have moved apart by more
  * than 100 sizes of the body.
- *  @param[in] rests  the solver finds states of rest: the body has failed under its loads
- *  @param[in] loads  words for the message: what loads prescribe now
+ *  @param[in] rests  true: the solver finds equilibria, so that the body has failed under its loads
+ *  @param[in] loads  text for the message: current values of loads
  *  @return BRECCIA_OK; BRECCIA_FAILURE after a message */
 int distortion_watch(const Domain *domain, const Clock *clock, bool rests, const char *loads, Error *error);
 

@@ -97,8 +97,8 @@ void explicit_add_to_ledger(Explicit *solver, const double *sums);
 void explicit_foresee_motions(Explicit *solver);
 /** After the drift: displacements at the end of the step, velocities in its middle. By all threads. */
 void explicit_prescribe_displacements(Explicit *solver);
-/** After loads have been applied at the end of the step: one particle more under each platen that lets go moves freely
- * from the middle of the step on. By one thread. */
+/** Registers platens that let go in the step, after loads have been applied at its end. One more particle under each
+ * moves freely from the middle of the step on. Serial. */
 void explicit_note_open_platens(Explicit *solver);
 /** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. By all threads. */
 void explicit_prescribe_velocities(Explicit *solver);

@@ -31,7 +31,7 @@ typedef struct Implicit {
   /* At the end of the step under way, as far as it has been iterated; `result` is whatever is worked out. */
   double *velocity[MOTIONS], *drag_then[MOTIONS], *result[MOTIONS];
   double length; /* of the step under way */
-  double struck; /* energy that impacts on one-sided supports dissipate in the step */
+  double struck; /* energy that impacts on one-sided supports dissipate in the current step */
   double then;   /* time of the run at its end */
   double next;   /* of the step to be tried next */
   double shift;  /* size of the largest displacements so far, by which errors are measured */

@@ -38,9 +38,9 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
   constraint_add(c, r->velocity, i, wanted);
 }
 
-/** Adds to the motions of the leaders of platens that close in the step under way what takes the motion of the centre
- * by the scheme to the prescribed one.
- *  @param[in,out] v  [motions][places] velocities, or else accelerations */
+/** Corrects the motions of the leaders of platens that close in the current step: the motion that the scheme gives the
+ * centre becomes the prescribed motion.
+ *  @param[in,out] v  [motions][places] velocities if `velocities`, otherwise accelerations */
 static void implicit_still_leaders(const Implicit *s, double time, bool velocities, double *const v[MOTIONS])
 {
   for (int n = 0; n < s->loading->constraint_count; ++n) {
@@ -343,8 +343,8 @@ static void finish_step(Implicit *s)
   s->shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
 }
 
-/** Notes what a particle loses, or a platen at its centre, that comes back to a one-sided support in the step: a
- * plastic impact. The centre of a platen comes to where it is prescribed to be by the accelerations of the scheme. */
+/** Adds the energy that a closing entry dissipates in a plastic impact. For a platen the function also stores the
+ * velocity and acceleration with which the scheme moves the centre to its prescribed position. */
 static void implicit_strike_one(void *context, const Constraint *c, int64_t entry)
 {
   Implicit *s = context;
@@ -375,7 +375,7 @@ static void implicit_strike(Implicit *s)
   pressing_each_closing(&s->pressing, s->loading, implicit_strike_one, s);
 }
 
-/** Solves the step under way until no one-sided support pulls or is passed. */
+/** Solves the current step until no closed entry pulls and no open entry is passed. */
 static NewtonOutcome implicit_press(Implicit *s, double end, Error *error)
 {
   pressing_begin(&s->pressing, &s->newton);

@@ -107,9 +107,9 @@ typedef struct Newton {
    * until bonds break. Of which these are is state, so that a restart makes the same; whether they are there is not. */
   double factored_share, factored_mass; /* stiffness_share and mass_factor */
   int64_t factored_broken;              /* bonds */
-  int64_t factored_open;                /* key of one-sided supports (loading/one_sided.h) */
+  int64_t factored_open;                /* key of one-sided supports at factorisation (loading/one_sided.h) */
   bool factored;
-  int64_t open_in_factors; /* key of one-sided supports of the factors that are there; no state */
+  int64_t open_in_factors; /* key of one-sided supports in the current factors; not part of the state */
   int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
   double *change_forces[MOTIONS]; /* room to foresee works; NULL: nobody wants them */
   /* of the last increment */

@@ -113,7 +113,7 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
       const bool strikes = lets_go->open[k] || s->clock->time <= constraint->load->begin;
       lets_go->open[k] = !(lets_go->pushes * off > 0);
       if (lets_go->open[k]) continue;
-      if (strikes) { /* a plastic impact */
+      if (strikes) { /* dissipates in a plastic impact */
         const double fast = v - motion->moved * part_of / dt, lost = 0.5 * rows.inertia[i] * counted[i] * fast * fast;
         damping += lost;
         external += lost;
@@ -160,8 +160,8 @@ static bool is_turn(const Explicit *s, const Constraint *constraint, bool second
   return load_acts(s->loading, constraint->load) && (constraint->images != NULL) == second;
 }
 
-/** Lets the centre of a platen that has come back to its support be where that is at the end of the step, once its
- * leaders have drifted. The shift is an impulse in the middle of the step. */
+/** Moves the centre of a platen that has passed its support to the position of the support at the end of the step. The
+ * leaders have drifted before; the shift acts as an impulse in the middle of the step. */
 static void explicit_strike_platen(Explicit *s, const Constraint *c, const struct Motion *motion)
 {
   const Particles *p = s->domain->particles;
@@ -183,8 +183,8 @@ static void explicit_strike_platen(Explicit *s, const Constraint *c, const struc
   }
 }
 
-/** Gives the leaders of a platen that has struck the velocity of the support besides that of the turn, at the end of
- * the step: a plastic impact of all particles under it. */
+/** Gives the leaders of a platen that has struck the velocity of the support plus that of the turn, at the end of the
+ * step: a plastic impact of all particles under the platen. */
 static void explicit_still_platen(Explicit *s, const Constraint *c)
 {
   const Particles *p = s->domain->particles;
@@ -242,7 +242,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = explicit_mass_damping(s), external = 0, damping = 0, kinetic = 0, between = 0;
-  const bool keeps = constraint->one_sided && !constraint->platen; /* the next step decides by the acceleration */
+  const bool keeps = constraint->one_sided && !constraint->platen; /* the acceleration decides in the next step */
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     if (constraint_leads(constraint, k) || constraint_is_open(constraint, k)) continue;
     int32_t i = constraint->load->selection.places[k];

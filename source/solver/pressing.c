@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATIENCE = 5, MAX_ROUNDS = 50 }; /* solutions; the latter besides one for each entry */
+enum { PATIENCE = 5, MAX_ROUNDS = 50 }; /* solutions without progress; solutions besides one for each entry */
 
 typedef struct Wrong {
   int64_t entry;
-  double size; /* force by which it pulls, or depth by which it is passed, over the largest of its kind */
+  double size; /* pulling force or penetration of the entry, over the largest pulling force or penetration */
 } Wrong;
 
 int pressing_create(Pressing *q, const Loading *loading, Error *error)
@@ -68,13 +68,13 @@ void pressing_begin(Pressing *q, const Newton *n)
   q->loose = (LoosePiece){0};
 }
 
-/* ---- which entries are wrong ---- */
+/* ---- wrong entries ---- */
 
 typedef struct Review {
   Pressing *pressing;
   const Particles *particles;
-  double time, force, gap; /* tolerances */
-  double pulls, depth;     /* largest */
+  double time, force, gap; /* time of the solution; tolerances of force and gap */
+  double pulls, depth;     /* largest pulling force; largest penetration */
 } Review;
 
 static void pressing_review(void *context, const Constraint *c, int64_t first)
@@ -98,7 +98,7 @@ static double pressing_largest_displacement(const Particles *p)
   return largest;
 }
 
-/** Orders wrong entries by size, the largest first, and equal ones by index. */
+/** Orders wrong entries by decreasing size, and equal ones by index. */
 static int pressing_compare(const void *a, const void *b)
 {
   const Wrong *one = a, *other = b;
@@ -121,7 +121,7 @@ static void pressing_find_wrong(Pressing *q, const Newton *n, double time)
   qsort(q->wrong, (size_t)q->wrong_count, sizeof *q->wrong, pressing_compare);
 }
 
-/** Chooses how many of the wrong entries change when a set has come to equilibrium. */
+/** Chooses the number of wrong entries that change after a set has come to equilibrium. */
 static void pressing_take(Pressing *q)
 {
   q->last_alone = false;
@@ -166,7 +166,7 @@ static int64_t pressing_last_wrong(const Pressing *q)
   return last;
 }
 
-/** Opens and closes the entries that change. @return number that are opened */
+/** Opens and closes the entries that change. @return number of opened entries */
 static int64_t pressing_change(Pressing *q, const Loading *loading)
 {
   int64_t opened = 0;
@@ -180,7 +180,7 @@ static int64_t pressing_change(Pressing *q, const Loading *loading)
   return opened;
 }
 
-/** Returns true if the set leaves no piece of a body at rest to nothing; keeps the first that does. */
+/** Returns true if the set leaves no piece of a body in equilibrium unsupported; stores the first such piece. */
 static bool pressing_holds(Pressing *q, const Newton *n)
 {
   LoosePiece loose;

@@ -204,7 +204,7 @@ static double take_row(const Summing *s, const Constraint *c, int32_t i)
   return along;
 }
 
-/** Returns the force along the direction without what a one-sided support on its particle would pull. */
+/** Returns the force along the direction, or 0 if a one-sided support would have to pull to exert it. */
 static double reactions_pressing(const Constraint *c, double along)
 {
   const OneSided *q = c->one_sided;
@@ -224,7 +224,7 @@ static void add_row(const Constraint *c, int64_t n, void *context)
   if (s->solver->type->inertia && !c->images) along += s->solver->type->inertia(s->solver, c, n);
   along = reactions_pressing(c, along);
   add_along(s, c, i, along);
-  for (int m = 0; m < constraint_leaders(c); ++m) /* a platen takes no moment about its centre */
+  for (int m = 0; m < constraint_leaders(c); ++m) /* a platen carries no moment about its centre */
     add_along(s, c, constraint_leader(c, m), -constraint_share(c, m, n) * along);
 }
 

@@ -29,7 +29,8 @@ void reactions_destroy(Reactions *reactions);
 Wrench reactions_sum(const Reactions *reactions, const Solver *solver, const uint8_t *on, const char *load,
                      const double *about);
 
-/** Returns true if reactions_of_each sums forces of bonds, which takes longer than a step: several supports mirror. */
+/** Returns true if reactions_of_each sums bond forces because several supports mirror, which takes longer than a
+ *  step. */
 bool reactions_of_each_ask_bonds(const Loading *loading);
 
 /** Finds what the motions of each load exert in the state held, as reactions_sum does.

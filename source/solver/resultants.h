@@ -1,10 +1,10 @@
 /* Resultant forces of loads and supports: the force in all that each exerts on the body now, and the largest that it
  * has exerted so far.
  * What a load of forces exerts is its factor times one vector, so that its largest resultant follows from its
- * history. What supports, prescribed motions, springs and dashpots exert depends on the body: the largest is kept,
- * of the end of every step, or of every tenth explicit step and the last of a stage where several supports mirror:
- * resultants of these are sums over bonds, which take longer than a step. The largest changes with such steps only, and
- * is part of the state, so that a restart ends in the same numbers. */
+ * history. What supports, prescribed motions, springs and dashpots exert depends on the body. The largest is taken over
+ * the ends of all steps. If several supports mirror, their resultants are sums over bonds, which take longer than a
+ * step: every tenth explicit step and the last step of a stage are then evaluated. The largest is part of the state, so
+ * that a restart ends in the same numbers. */
 #ifndef BRECCIA_SOLVER_RESULTANTS_H
 #define BRECCIA_SOLVER_RESULTANTS_H
 
@@ -21,8 +21,7 @@ typedef struct Resultant {
 int resultants_create(Solver *solver, Error *error);
 void resultants_destroy(Solver *solver);
 
-/** Returns the number of explicit steps from one whose resultants are looked at to the next: peaks between can be
- * missed. */
+/** Returns the number of explicit steps between evaluations of resultants. Peaks between evaluations can be missed. */
 int64_t resultants_interval(const Solver *solver);
 
 /** After a step that has come out well: keeps resultants larger than those so far. */

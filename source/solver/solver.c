@@ -406,15 +406,15 @@ static int tell_trap(const Trap *trap, int64_t step, double time, const char *un
   return status;
 }
 
-/** Returns true after increments at rest, at the ends of stages, and now and then before: looking takes as long as a
- * few evaluations of forces. */
+/** Returns true if distortion is to be checked: after static increments, at the ends of stages, and at intervals
+ * before. A check takes as long as a few evaluations of forces. */
 static bool solver_looks_at_distortion(const Solver *s)
 {
   const int64_t every = s->type->rests ? 1 : s->type->few_steps ? 10 : 100;
   return s->clock.ended || s->clock.step % every == 0;
 }
 
-/** Adds what the loads and prescribed motions that act prescribe now, each with its line in the deck. */
+/** Adds the current values of active loads and prescribed motions, each with its line in the deck. */
 static void solver_tell_loads(const Solver *s, Text *text)
 {
   enum { FEW = 5 };
@@ -434,7 +434,7 @@ static void solver_tell_loads(const Solver *s, Text *text)
   }
 }
 
-/** Fails if the body is deformed as no body can be, with the loads under which it is. */
+/** Fails if the deformation of the body is impossible, with the current loads in the message. */
 static int solver_watch_distortion(Solver *s, Error *error)
 {
   Text loads = {0};

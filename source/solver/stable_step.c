@@ -9,9 +9,9 @@
 
 enum { LEAST_ITERATIONS = 13, MOST_ITERATIONS = 60, VECTORS = 2 };
 
-/* Growth of the largest eigenvalue in an iteration, as a share, below which the iteration ends. The first vector goes by
- * the numbers of particles. At 1e-4 the step depended on their order by 0.6 % in small ordinary bodies, where the highest
- * modes lie close together; at 1e-6 by 1e-4 at most. */
+/* Relative growth of the largest eigenvalue in an iteration below which the iteration ends. The first vector depends on
+ * the numbers of particles. In small ordinary bodies the highest modes lie close together: with 1e-4 the step depended
+ * on the order of particles by 0.6 %, with 1e-6 by at most 1e-4. */
 static const double least_growth = 1e-6;
 
 static double mass_product(const Domain *d, double *const a[MOTIONS], double *const b[MOTIONS])

@@ -87,7 +87,7 @@ static NewtonOutcome descend(Static *s, double end, Error *error)
   return descent_solve(&s->descent, n, end, LONGER * s->spec->newton.iterations, error);
 }
 
-/** Solves the increment under way with the set of one-sided supports as it is. */
+/** Solves the current increment with the current set of one-sided supports. */
 static NewtonOutcome static_solve(Static *s, double end, Try how, Error *error)
 {
   domain_tell_time(s->domain, end, end - s->clock->time);
@@ -99,7 +99,7 @@ static NewtonOutcome static_solve(Static *s, double end, Try how, Error *error)
   return how.by == BY_SECANTS ? descend(s, end, error) : newton_solve(&s->newton, end, error);
 }
 
-/** Solves the increment under way until no one-sided support pulls or is passed. */
+/** Solves the current increment until no closed entry pulls and no open entry is passed. */
 static NewtonOutcome static_press(Static *s, double end, Try how, Error *error)
 {
   pressing_begin(&s->pressing, &s->newton);

@@ -26,8 +26,8 @@ typedef struct Unknowns {
 /** Those of the stage under way. Nothing is kept but what is pointed to. */
 Unknowns unknowns_of(const Domain *domain, const Loading *loading);
 
-/** Calls `one` for the n-th particle of each motion that acts and has not let go of it. Particles that follow images
- *  come behind all others; where two motions say what one particle does the later one holds. */
+/** Calls `one` for the n-th particle of each active motion, except for particles that the motion has let go. Particles
+ *  that follow images come last. If two motions prescribe one particle, the later one counts. */
 void unknowns_each_row(const Unknowns *unknowns, void (*one)(const Constraint *constraint, int64_t n, void *context),
                        void *context);
 

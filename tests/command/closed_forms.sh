@@ -62,8 +62,8 @@ near "opening of the crack, fibres" "$(value fibres/mouth 4)" 0.003292 0.002
 [ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
 
 # Prandtl: (2 + pi) s_u on 1 m x 1 m, s_u = 100 kPa; 5 particles under half of the footing carry 14 % more. The ground is
-# coarse: 10 particles carry less. Families of the ground surface that were too stiff along the surface, and yielded
-# too soon there, hid 2 % of the error.
+# coarse: 10 particles carry less. Families at the ground surface were too stiff along the surface and yielded too soon,
+# which hid 2 % of the error.
 run footing/footing --set "variables.dx=200 mm" --set "variables.settlement=9 mm" --set "solve.static.increments=6"
 near "limit load of the footing" "$(cut -d, -f4 footing/footing.csv | sort -gr | head -1)" 514.16 0.15
 

@@ -68,7 +68,7 @@ grep -q 'cannot be written' errors || fail "a full disk: $(cat out errors)"
 equal "a bar that does not fail: status" $? 2
 grep -q 'the body does not fail under 200 kN; give a larger TO' errors || fail "a bar that does not fail: $(cat out errors)"
 grep -q 'was done' out && fail "cases without space for their files count as done: $(cat out)"
-# ---- displacement that jumps at 100 kN and goes on as before: from 50 to 400 kN it grows by 1.3 times as fast only ----
+# ---- displacement jumps at 100 kN, then grows at the former rate; from 50 to 400 kN only 1.3 times as fast ----
 sed 's/force: \["${pull}"/force: ["${pull + 100 * min(1 kN, max(0 kN, pull - 100 kN))}"/' elastic.yaml > jump.yaml
 sed -i 's/1 mm, area/10 mm, area/; s/\[3000, 1\]/[30, 1]/' jump.yaml
 "$breccia" failure jump.yaml --load 'variables.pull=50 kN:400 kN' --within 0.02 --quiet > out 2> errors
@@ -116,7 +116,7 @@ bracket out | awk '{exit !($1 > 90 && $1 < 105 && $2 > 99.9 && $2 < 110)}' || fa
 grep -q '^gives way: displacement grows too fast' out || fail "a bar that hardens gives way: $(cat out)"
 refused_by_rate=$("$breccia" failure hardening.yaml --load 'variables.pull=50 kN:120 kN' --rate 300 2>&1)
 contains "a larger rate" "$refused_by_rate" "does not fail under 120 kN; give a larger TO"
-# A body that has given way bears no larger load: pulled by 130 kN at most, the bar moves no further under larger loads.
+# A body that has failed carries no larger load: the bar carries 130 kN at most and moves no further.
 sed 's/force: \["${pull}"/force: ["${min(pull, 130 kN)}"/' hardening.yaml > stopped.yaml
 "$breccia" failure stopped.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > out 2> errors
 equal "a bar that goes no further: status" $? 0

@@ -190,7 +190,7 @@ profiles: {strip: {of: {all: yes}, along: x}}
 results: {number: 4, precision: double}
 pictures: []
 Y
-# the same bonds crushed: what presses across them is found again
+# stages.yaml with bonds that crush: a restart computes the pressure across them again
 sed 's/exponential-softening/fib-concrete, compressive strength: 12 MPa/; s/yield stress: 2 MPa/yield stress: 40 MPa/; s/2e-5, free/-1.2e-4, free/' \
   stages.yaml > crushed.yaml
 # ground that begins under its weight, at rest and shaken

@@ -103,7 +103,7 @@ flat served.yaml > flat-served.yaml
 "$breccia" run flat-served.yaml > out 2>&1 || fail "flat, served: $(cat out)"
 same flat flat-served results.vtkhdf
 
-# Free strains: a law in a server is given what is left of strains, too.
+# Free strains: a law in a server receives strains less the free strains, too.
 swollen() { sed 's/^loads:/&\n  - {on: {face: x+, layers: 4}, initial strain: 2e-4, history: {ramp to: 2e-4}}/' "$1"; }
 swollen home.yaml > swollen.yaml
 swollen served.yaml > swollen-served.yaml

@@ -1,4 +1,4 @@
-# Why bonds broke, as 'breccia why' tells it of results, beside the summary of the run.
+# 'breccia why' on results, compared with the summary of the run.
 . "$(dirname "$0")/common.sh"
 cd "$work" || exit 1
 
@@ -35,7 +35,7 @@ equal "one bond from its other end" "$("$breccia" why out/results.vtkhdf --bond 
 contains "the summary agrees" "$(grep first_broken_bond out/summary.json)" "\"particles\": [${pair%,*}, ${pair#*,}]"
 contains "the summary tells the cause" "$(grep first_broken_bond out/summary.json)" '"cause": "limit", "value": '
 
-# A run that goes on after a stop tells the same.
+# A run that is continued after a stop gives the same reasons.
 "$breccia" run torn.yaml --output parts --steps 1500 > /dev/null 2>&1
 "$breccia" run torn.yaml --output parts --restart > /dev/null 2>&1 || fail "the restart"
 "$breccia" why parts --first 1000000 | cmp - all || fail "after a restart other reasons"

@@ -1,4 +1,4 @@
-"""What `breccia check` tells of memory beside the peak of the run, and the time that a failure criterion adds.
+"""Memory printed by `breccia check` against the peak of the run, and the time that a failure criterion adds.
 
     estimates.py BRECCIA
 """
@@ -9,9 +9,9 @@ import subprocess
 import sys
 import tempfile
 
-os.environ.pop("MALLOC_PERTURB_", None)  # which fills memory that a run would never touch
+os.environ.pop("MALLOC_PERTURB_", None)  # MALLOC_PERTURB_ fills memory that a run never touches
 PROGRAM = os.path.abspath(sys.argv[1])
-SHARE = 0.2  # within which memory is told
+SHARE = 0.2  # relative tolerance of the printed memory
 DECK = """
 title: estimates
 units: {{length: m, force: N, time: s}}
@@ -48,7 +48,7 @@ def deck(folder, formulation, body, size, solve=STATIC, more="", softens=False):
 
 
 def told(path):
-    """Megabytes and seconds that check tells."""
+    """Returns the megabytes and seconds that check prints."""
     said = subprocess.run([PROGRAM, "check", path], check=True, capture_output=True, text=True).stdout
     found = re.search(r", (\d+) MB, (?:about|at least) ([\d.]+) (s|min|h)", said)
     if not found:
@@ -57,7 +57,7 @@ def told(path):
 
 
 def peak(path, folder):
-    """Megabytes of a run, in a process of its own as rusage keeps the largest of all children."""
+    """Returns the megabytes of a run, in a separate process because rusage keeps the largest of all children."""
     child = os.fork()
     if child == 0:
         done = subprocess.run([PROGRAM, "run", path, "--quiet", "--output", os.path.join(folder, "results")], capture_output=True, text=True)
@@ -88,7 +88,7 @@ memory("hybrid plate in motion", "hybrid", PLANE, 200, solve=EXPLICIT)
 memory("correspondence cube at rest", "correspondence", CUBE, 24)
 memory("hybrid plate that may soften, by factors", "hybrid", PLANE, 100, softens=True)
 with tempfile.TemporaryDirectory() as without, tempfile.TemporaryDirectory() as folder:
-    # A hybrid bond's energy takes tens of times its share of a force evaluation; the factor is far below, as machines are busy.
+    # The energy of a hybrid bond takes tens of times its share of forces; the factor allows for busy machines.
     plain = told(deck(without, "hybrid", PLANE, 60, solve="{explicit: {end time: 20 ms}}"))[1]
     judged = told(deck(folder, "hybrid", PLANE, 60, solve="{explicit: {end time: 20 ms}}",
                        more="failure: {criterion: critical bond energy, fracture energy: 100 N/m}"))[1]

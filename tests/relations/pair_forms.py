@@ -385,8 +385,8 @@ def breaking_under_free_strain(test):
 
 
 def stiffness_damping_of_rigid_motion(test):
-    """Damping in proportion to stiffness takes nothing from a rigid body: one on a spring, under any other damping too,
-    moves as without stiffness damping."""
+    """Damping in proportion to stiffness dissipates nothing in a rigid body: a rigid body on a spring, under any other
+    damping too, moves as without stiffness damping."""
     for damping, extra in (
         ("local damping: 0.3", ""),
         ("damping: 60, local damping: 0.3", ""),

@@ -4,8 +4,8 @@
 #include "constitutive/solid/link_law.h"
 #include "constitutive/solid/spectral.h"
 
-/** Returns the curve of tension of a point that spreads the fracture energy over a length; 0: over that of the law. A
- *  length that would make the force snap back makes it fall within a hundredth of the stretch at the peak. */
+/** Returns the tension curve of a point that spreads the fracture energy over a length; 0: over the length of the law.
+ *  A length for which the force would snap back gives a curve that falls within a hundredth of the peak stretch. */
 LANES_INLINE LinkCurve link_curve_over(const LinkLaw *c, double length)
 {
   const double shortest = 1.01;
@@ -57,8 +57,8 @@ LANES_INLINE void find_closed_stress(DualSlopes n, const ClosedModuli *c, const 
  *  a the size of the strain of closed cracks and q = <pressure - tension> / (pressure + tension) of the principal
  *  stresses of C strain.
  *  @param[in] strain  principal strains in descending order, the variables 0, 1, 2
- *  @param[in] length  over which points spread the fracture energy; 0: over that of the law
- *  @param[out] trial  history but for the length
+ *  @param[in] length  length over which points spread the fracture energy; 0: the length of the law
+ *  @param[out] trial  history except the length
  *  @param[out] rest  factors of C strain and of the closed stresses */
 LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committed, Lanes length, const Dual strain[3],
                             const Dual effective[3], const Dual closed[3], Lanes trial[LINK_HISTORY], Dual rest[2])

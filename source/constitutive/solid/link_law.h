@@ -15,18 +15,18 @@ typedef struct LinkLaw {
   Elasticity elastic;
   breccia_link link;
   ClosedModuli closed;
-  /* 2 G_F / (E S_t), which over the length is the stretch where one line ends [length]; 0: no fracture energy; part of
-   * G_F below the first of two lines, 1: there is one. */
+  /* straight: 2 G_F / (E S_t) [length], which divided by the length is the end stretch of a single line; 0: no fracture
+   * energy. first_share: part of G_F below the first of two lines; 1: there is one line. */
   double straight, first_share;
   NormalLengths lengths;
   SolidUpdate *update; /* for the vectors of this machine */
 } LinkLaw;
 
 /* The closing offset is the size of the strain of closed cracks at which they begin to carry pressure [strain]. */
-/* LINK_LENGTH is that of the crack's normal (normal_lengths.h). */
+/* LINK_LENGTH is the length by the crack normal (normal_lengths.h). */
 enum { LINK_TENSILE = 0, LINK_COMPRESSIVE, LINK_CLOSING_OFFSET, LINK_LENGTH, LINK_HISTORY };
 
-/** Lets points spread the fracture energy over lengths by the normals of their cracks. */
+/** Sets the lengths by crack normal over which points spread the fracture energy. */
 void link_damage_take_lengths(void *constants, const NormalLengths *lengths);
 
 LANES_CHOICE(SolidUpdate, link_damage_update)

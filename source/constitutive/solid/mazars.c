@@ -2,8 +2,9 @@
  * equivalent strain e = sqrt(sum <e_i>^2), D = a_t D_t + (1 - a_t) D_c, damage of tension and of compression from the largest e so far, k;
  * damage never heals.
  *
- * In tension D_t = 1 - k0 / k exp(-B_t (k - k0)) with 1 / B_t = G_F / (l E k0) - k0 / 2: the curve peaks at E k0 and spends G_F over the
- * length l whatever that is; l is that of the crack's normal where the formulation tells it (normal_lengths.h). In compression D_c = 1 - k0 (1 - A) / k - A exp(-B (k - k0)). */
+ * In tension D_t = 1 - k0 / k exp(-B_t (k - k0)) with 1 / B_t = G_F / (l E k0) - k0 / 2: the curve peaks at E k0 and
+ * spends G_F over any length l. If the formulation gives lengths by crack normal (normal_lengths.h), l is that length.
+ * In compression D_c = 1 - k0 (1 - A) / k - A exp(-B (k - k0)). */
 #include "constitutive/solid/mazars.h"
 
 enum { STRENGTH = ELASTIC_PARAMETERS, ENERGY, COMPRESSION_SHARE, COMPRESSION_RATE, LENGTH };

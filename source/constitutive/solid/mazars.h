@@ -5,7 +5,7 @@
 #include "constitutive/normal_lengths.h"
 #include "constitutive/solid/solid_lanes.h"
 
-/* MAZARS_LENGTH is that of the crack's normal (normal_lengths.h). */
+/* MAZARS_LENGTH is the length by the crack normal (normal_lengths.h). */
 enum { MAZARS_LARGEST = 0, MAZARS_DAMAGE, MAZARS_LENGTH, MAZARS_HISTORY };
 
 typedef struct Mazars {
@@ -16,7 +16,7 @@ typedef struct Mazars {
   SolidUpdate *update; /* for the vectors of this machine */
 } Mazars;
 
-/** Lets points spread the fracture energy over lengths by the normals of their cracks. */
+/** Sets the lengths by crack normal over which points spread the fracture energy. */
 void mazars_take_lengths(void *constants, const NormalLengths *lengths);
 
 LANES_CHOICE(SolidUpdate, mazars_update)

@@ -14,8 +14,8 @@ LANES_INLINE Lanes mazars_equivalent(const Lanes strain[3])
   return lanes_root(square);
 }
 
-/** Returns B_t for lengths of cracks; where they are 0 that for the length of the law. A length that would make the
- *  curve snap back makes it fall over a hundredth of the strain at the peak. */
+/** Returns B_t for the lengths of points; a length of 0 stands for the length of the law. A length for which the curve
+ *  would snap back gives a curve that falls over a hundredth of the peak strain. */
 LANES_INLINE Lanes mazars_rate(const Mazars *c, Lanes length)
 {
   const double steepest = 0.01;
@@ -25,7 +25,7 @@ LANES_INLINE Lanes mazars_rate(const Mazars *c, Lanes length)
                       lanes_set(c->tension_rate));
 }
 
-/** Principal stresses and damage at principal strains, which come as the variables 0, 1, 2.
+/** Computes principal stresses and damage from principal strains, which are the variables 0, 1 and 2.
  *  @param[in] rate  B_t */
 LANES_INLINE void respond(DualSlopes n, const Mazars *c, Lanes rate, const Dual strain[3], const Lanes *committed,
                           Dual stress[3], Dual *largest, Dual *damage)

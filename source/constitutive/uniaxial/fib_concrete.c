@@ -1,13 +1,16 @@
-/* Concrete along bonds that softens in tension and crushes. Tension as exponential-softening (Hobbs 2021),
- * compression by the curve of fib Model Code 2010, eq. 5.1-26, beyond its peak by an exponential fall that spends a
- * crushing energy:
+/* Concrete along bonds that softens in tension and crushes. Tension follows exponential-softening (Hobbs 2021).
+ * Compression follows the curve of fib Model Code 2010, eq. 5.1-26; beyond the peak stress falls exponentially and
+ * spends a crushing energy:
  *   sigma_c / f = (k eta - eta^2) / (1 + (k - 2) eta),   eta = strain / peak strain, k = E peak strain / f,
  *   sigma_c / f = exp(-(strain - peak strain) f l / G_fc).
- * A point is elastic with a damage in tension and a plastic strain in compression, which both only grow, so that no
- * cycle of strain makes energy, whatever the pressure across does. Two things are those of a body, not of one bond:
- * - Pressure across a bond stretches it without stress in the body. Only what a bond is longer than that damages it.
- * - Slanted bonds still gain where those along the pressure have begun to crush. f and the peak strain of bonds are
- *   such that a body of bonds in all directions, pressed one way with its sides free, carries the strength given. */
+ * A point is elastic with damage in tension and a plastic strain in compression. Both only grow, so that no cycle of
+ * strain generates energy, for any history of the pressure across the bond. Two quantities belong to the body, not to
+ * one bond:
+ * - Pressure across a bond elongates the bond without stress in the body. Only strain beyond this elongation damages
+ *   the bond.
+ * - The stress of slanted bonds still increases when bonds along the pressure have begun to crush. The law
+ *   therefore chooses f and the peak strain of bonds such that a body has the given strength. The body has bonds in all
+ *   directions and free sides. */
 #include "constitutive/uniaxial/softening.h"
 #include "constitutive/uniaxial/uniaxial_law.h"
 
@@ -15,10 +18,10 @@ enum { FIB_DIRECTIONS = 24, FIB_TURNS = 16, FIB_HALVINGS = 36 };
 
 typedef struct FibConcrete {
   Softening tension;
-  double decay, tail;             /* of tension beyond the peak */
-  double body;                    /* compressive strength as given */
+  double decay, tail;             /* parameters of tension beyond the peak */
+  double body;                    /* compressive strength of the body, as given */
   double strength, strain, width; /* of bonds in compression: f, peak strain, G_fc / (f l) */
-  double most_lateral;            /* elongation by pressure across, at most */
+  double most_lateral;            /* upper bound of the elongation by pressure across the bond */
 } FibConcrete;
 
 enum { FIB_STRENGTH = SOFTENING_PARAMETERS, FIB_STRAIN, FIB_ENERGY, FIB_DECAY, FIB_TAIL, FIB_DIMENSIONS };
@@ -37,7 +40,7 @@ static const breccia_parameter fib_parameters[] = {
      "those of a single bond; those of the body when absent"},
 };
 
-/* Share of the strength at which strains are compared; step and end of curves, in peak strains; least k. */
+/* Share of the strength at which strains are compared; step and end of curves in peak strains; smallest k. */
 static const double fib_near = 0.95, fib_step = 0.05, fib_reach = 8, fib_least_ratio = 1.02;
 
 static double fib_envelope(const void *constants, double x, double *slope)
@@ -48,7 +51,7 @@ static double fib_envelope(const void *constants, double x, double *slope)
   return (1 - (1 - fall) / whole + c->tail * (1 - x)) / (1 + c->tail);
 }
 
-/** Stress of bonds at a compressive strain that grows, both positive, and its slope. */
+/** Returns the envelope stress of bonds at a monotonic compressive strain and its slope; compression is positive. */
 static double fib_compression(const FibConcrete *c, double strain, double *slope)
 {
   if (strain >= c->strain) {
@@ -62,15 +65,15 @@ static double fib_compression(const FibConcrete *c, double strain, double *slope
   return c->strength * above / below;
 }
 
-/** Stress of a bond that is strained once, compression negative. */
+/** Returns the stress of a bond under monotonic strain; compression is negative. */
 static double fib_once(const FibConcrete *c, double strain)
 {
   double slope;
   return strain >= 0 ? c->tension.young * strain : -fib_compression(c, -strain, &slope);
 }
 
-/** Directions of bonds: squares of their parts along the pressure, and weights such that a body of them has the modulus
- *  of its bonds. */
+/** Directions of bonds: squares of direction cosines with the pressure, and weights for which a body has the modulus of
+ *  its bonds. */
 typedef struct FibBody {
   double along[FIB_DIRECTIONS], weight[FIB_DIRECTIONS];
 } FibBody;
@@ -84,7 +87,7 @@ static FibBody fib_body(int dimensions)
     body.along[k] = dimensions == 3 ? part * part : cos(angle) * cos(angle); /* evenly over a sphere, over a circle */
     body.weight[k] = 1.0 / FIB_DIRECTIONS;
   }
-  /* Pressed by e with Poisson's ratio n the sides grow by n e: n = 1/4 in space, 1/3 in the plane. */
+  /* A compressive strain e makes the sides grow by Poisson's ratio times e: 1/4 in space, 1/3 in the plane. */
   const double poisson = dimensions == 3 ? 0.25 : 1.0 / 3;
   for (int k = 0; k < FIB_DIRECTIONS; ++k)
     sum += body.weight[k] * body.along[k] * (body.along[k] - poisson * (1 - body.along[k]));
@@ -92,7 +95,7 @@ static FibBody fib_body(int dimensions)
   return body;
 }
 
-/** Stress along the pressure of a body pressed by a strain, with its sides free; compression positive. */
+/** Returns the stress of a body in uniaxial compression with free sides at a strain; compression is positive. */
 static double fib_pressed(const FibConcrete *c, const FibBody *body, double strain)
 {
   double low = 0, high = strain, along = 0;
@@ -113,7 +116,7 @@ static double fib_pressed(const FibConcrete *c, const FibBody *body, double stra
   return along;
 }
 
-/** Finds what a body carries at most, and the strain at which it first carries 0.95 of its strength as given. */
+/** Returns the strength of a body, and finds the strain at which the body first carries 0.95 of the given strength. */
 static double fib_peak(const FibConcrete *c, const FibBody *body, double *near)
 {
   double most = 0, before = 0;
@@ -128,8 +131,8 @@ static double fib_peak(const FibConcrete *c, const FibBody *body, double *near)
   return most;
 }
 
-/** Finds f and the peak strain of bonds such that a body has the strength that is given, and 0.95 of it at the strain of
- *  the curve. `crushing` is G_fc / l. */
+/** Finds f and the peak strain of bonds such that the body has the given strength, and carries 0.95 of that strength at
+ *  the strain of the curve. `crushing` is G_fc / l. */
 static void fib_calibrate(FibConcrete *c, double peak_strain, double crushing, int dimensions)
 {
   const FibBody body = fib_body(dimensions);
@@ -180,7 +183,7 @@ static void fib_moduli(const void *constants, double *bulk, double *shear)
   uniaxial_moduli(((const FibConcrete *)constants)->tension.young, bulk, shear);
 }
 
-/** A bond carries nothing beyond the end of its curve, and where pressure across has stretched it most. */
+/** Returns the strain at which a bond has lost all stress: the end of its curve plus the largest lateral elongation. */
 static double fib_failure_strain(const void *constants)
 {
   const FibConcrete *c = constants;
@@ -204,8 +207,8 @@ static void fib_history_name(const void *constants, int k, char *name, size_t si
   snprintf(name, size, k == FIB_DAMAGE ? "bond damage" : "crushing strain");
 }
 
-/** A point shorter than its plastic strain has left it. Where loading and unloading agree but for round-off the tangent
- *  is that of loading, as in softening_beyond. */
+/** Updates a point whose elastic strain is compressive. Where the loading and unloading branches agree up to round-off
+ *  the tangent is the loading tangent, as in softening_beyond. */
 static void fib_press(const FibConcrete *c, UniaxialPoint *p, double elastic)
 {
   double slope;
@@ -219,8 +222,8 @@ static void fib_press(const FibConcrete *c, UniaxialPoint *p, double elastic)
   p->trial[FIB_CRUSHED] = -p->strain + limit / young;
 }
 
-/** A point longer than its plastic strain, by `elastic`, of which pressure across makes `lateral`. Pressure across
- *  changes with the strain of the family, which the tangent of one bond does not know. */
+/** Updates a point whose elastic strain `elastic` is tensile and includes the elongation `lateral` by pressure across.
+ *  The pressure changes with the strain of the family, a derivative that the tangent of one bond does not contain. */
 static void fib_pull(const FibConcrete *c, UniaxialPoint *p, double elastic, double lateral)
 {
   const Softening *t = &c->tension;
@@ -233,7 +236,7 @@ static void fib_pull(const FibConcrete *c, UniaxialPoint *p, double elastic, dou
                grown = 1 - carried / (young * own);
   if (!(grown > damage - SOFTENING_TIE)) return;
   slope = x < 1 ? t->strength * slope / (t->end - t->peak) : 0;
-  /* Where something presses across, damage grows by less than the strain alone would let it: its secant is taken. */
+  /* Under pressure across the bond damage grows by less than under the strain alone: the tangent is then the secant. */
   p->tangent = young * (1 - grown) + (lateral > 0 ? 0 : elastic * (slope - carried / own) / own);
   if (!(grown > damage)) return;
   p->trial[FIB_DAMAGE] = grown;

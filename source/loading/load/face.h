@@ -12,8 +12,8 @@ typedef struct Face {
   int64_t count;
   int32_t *place, *at; /* [count] at: which of the load's particles stands over it at the face */
   double *per_volume;  /* [count] force per volume by a force of 1 per area */
-  bool scattered;      /* particles from a file take forces of all columns: `at` is the index of the entry itself */
-  double plane;        /* with `scattered`: coordinate of the face along its axis */
+  bool scattered;      /* particles from a file: each entry takes the forces of all columns; `at` is its own index */
+  double plane;        /* coordinate of the face along its axis, if `scattered` */
 } Face;
 
 /** Finds the face on which a load acts; with `area` of the deck that is shared among all its particles. @param[out] face  to be freed with
@@ -22,9 +22,9 @@ int face_create(Face *face, const Load *load, const LoadMaking *making);
 /** Spreads it over the particles on which forces act: those of the load, or as the bonds would that the face has cut off (docs/theory.md 5.5), with
  *  those behind them, which become the load's `other`. */
 int face_spread(Face *face, Load *load, const LoadMaking *making);
-/** Spreads a face of particles from a file, of which the deck gives the area, such that force and moments are right
- *  (face_scattered.c).
- *  @param[out] done  false: the face is no plane of one block from a file, or its area is another */
+/** Spreads the forces on a plane face of particles from a file, so that resultant force and moment are exact
+ *  (face_scattered.c). The deck gives the area of the face.
+ *  @param[out] done  false: the face is not a plane of one block from a file, or the area does not fit the face */
 int face_spread_scattered(Face *face, Load *load, const LoadMaking *making, bool *done);
 /** Scales what columns take that stand for other areas than their own, near corners, so that the force of an uneven load in all is the one over the face.
  *  @param[in] value  [particles of the load] force per area */

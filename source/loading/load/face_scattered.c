@@ -1,17 +1,19 @@
 /* Forces on a plane face of particles from files.
  *
- * The outermost particles of a scattered body stand at several distances from the face, and a layer of them holds only
- * some. The force on the face is therefore spread over all particles behind the face, down to twice the horizon. The
- * first estimate of their areas is what bonds cut off by the face would bring in an even stress (EvenStress), so that an
- * even stress reaches up to the face, or, in bodies too thin for that, their volume times
+ * The outermost particles of a scattered body have different distances from the face, and one layer contains only some
+ * of them. The force on the face is therefore spread over the particles behind the face, up to a depth of two horizons.
+ * The first estimate w0 of their areas comes from the formulation: the forces of the bonds that the face cuts off in a
+ * uniform stress (EvenStress). A uniform stress then extends up to the face. In bodies shorter than four horizons, w0
+ * is the volume times
  *   q(z) = (1 - z^2 / D^2)^((d + 1) / 2),
- * the share of the bonds of a particle at the depth z < D that reach through a plane; D is the horizon.
+ * the share of the bonds of a particle at the depth z < D that cross a plane; D is the horizon.
  *
- * These areas w0 are corrected so that the resultant force and moment are those of the continuous traction, and of
- * water pressures, which are linear, the second moments along the face, too:
+ * Corrections make the resultant force and moment of the areas equal to those of the continuous traction. For water
+ * pressures, which are linear, they also correct the second moments along the face:
  *   w_i = w0_i + V_i q(z_i) sum_k b_k f_k(x_i),  sum_i w_i f_k(x_i) = integral of f_k over the face,
- * with f = 1, the coordinates s, t along the face, s^2, s t, t^2 and the depth z. The face is a segment or a rectangle
- * of the given area. It stands where the volume behind it, over the area, ends; its centre is that of these volumes. */
+ * with f = 1, the coordinates s, t along the face, the depth z, and s^2, s t, t^2. The face is a segment or a rectangle
+ * of the given area. Its plane ends the volume behind the face, divided by the area. Its centre is the centre of that
+ * volume unless the deck gives 'centre'. */
 #include "loading/load/face.h"
 
 #include "base/linear.h"
@@ -28,14 +30,14 @@ typedef struct Scattered {
   Face *face;
   double spacing, horizon, thickness; /* thickness: 1 in space */
   int along[2], tangents;             /* axes along the face */
-  double low[3], high[3];             /* of the particles behind the face that take forces, centres */
-  double plane;                       /* outwards coordinate of the face */
-  double centre[2], half[2];          /* of the face */
-  uint8_t *taking;                    /* [places] */
-  double *area[3];                    /* [places] */
+  double low[3], high[3];             /* extents of the centres of particles that take forces */
+  double plane;                       /* coordinate of the face along the outward normal */
+  double centre[2], half[2];          /* centre and half sizes of the face */
+  uint8_t *taking;                    /* [places] 1: the particle takes forces */
+  double *area[3];                    /* [places] area vectors of the uniform stress; finally area[0] is the area */
 } Scattered;
 
-/** Coordinate of a place along the outward normal. */
+/** Returns the coordinate of a place along the outward normal. */
 static double scattered_outwards(const Scattered *s, int64_t place)
 {
   return s->face->outwards * s->making->body->particles.position[s->face->axis][place];
@@ -43,7 +45,7 @@ static double scattered_outwards(const Scattered *s, int64_t place)
 
 /* ---- the face ---- */
 
-/** True if all particles of a load come from one block with a file. */
+/** Returns true if all particles of a load are in one block from a file. */
 static bool scattered_is_cloud(const Load *load, const Body *body)
 {
   const Particles *p = &body->particles;
@@ -54,7 +56,7 @@ static bool scattered_is_cloud(const Load *load, const Body *body)
   return load->selection.count > 0;
 }
 
-/** Finds the extents of the particles of the block, or of the load alone. */
+/** Computes the extents of the particles of the block, or of the load's selection only. */
 static void scattered_extents(const Scattered *s, bool selected, double low[3], double high[3])
 {
   const Particles *p = &s->making->body->particles;
@@ -74,8 +76,8 @@ static void scattered_extents(const Scattered *s, bool selected, double low[3], 
   }
 }
 
-/** Finds the axis and the direction of the face of selections that do not name one: the only axis at one end of which
- *  all selected particles stand. @return false: there are several, or none */
+/** Finds the axis and the direction of the face for selections that name no face: the only axis with all selected
+ *  particles at one end. @return false: there are several such axes, or none */
 static bool scattered_find_normal(const Scattered *s, const double low[3], const double high[3])
 {
   double block_low[3], block_high[3];
@@ -91,8 +93,8 @@ static bool scattered_find_normal(const Scattered *s, const double low[3], const
   return found == 1;
 }
 
-/** Finds the extents along the face of the particles that take forces: those of the selection, up to sides of the block
- *  that they reach. @return false: the area is not that of the face between them */
+/** Finds the extents along the face of the particles that take forces: the extents of the selection, or the sides of
+ *  the block that the selection reaches. @return false: the area does not fit these extents */
 static bool scattered_find_sides(Scattered *s, double area)
 {
   double low[3], high[3], size = s->thickness;
@@ -112,7 +114,7 @@ static bool scattered_find_sides(Scattered *s, double area)
   return area > 0.75 * size && area < 1.33 * size;
 }
 
-/** True if a place stands behind the face or its sides' ends, in its block. */
+/** Returns true if a place is in the block of the load and within the sides of the face. */
 static bool scattered_is_behind(const Scattered *s, int64_t place)
 {
   const Particles *p = &s->making->body->particles;
@@ -124,8 +126,8 @@ static bool scattered_is_behind(const Scattered *s, int64_t place)
   return true;
 }
 
-/** Finds the plane of the face, behind which the volume of a stretch is its length times the area, and the centre of the
- *  volume there. The inner end of the stretch is the mean over a horizon, as particles are few. */
+/** Finds the plane of the face, at which the volume of a stretch of the block equals length times area, and the centre
+ *  of that volume. The inner end of the stretch is averaged over a horizon, because particles are few. */
 static void scattered_find_plane(Scattered *s, double area)
 {
   const Particles *p = &s->making->body->particles;
@@ -145,7 +147,7 @@ static void scattered_find_plane(Scattered *s, double area)
   for (int t = 0; t < s->tangents; ++t) s->centre[t] = moment[t] / volume;
 }
 
-/** Takes over what the deck says of the centre of the face; refuses a centre that is none of the particles' face. */
+/** Sets the centre of the face from the deck; refuses a centre far from the selected particles' face. */
 static int scattered_take_centre(Scattered *s)
 {
   const double *given = s->load->spec->centre, near = 2 * s->spacing;
@@ -174,14 +176,14 @@ static double scattered_depth(const Scattered *s, int64_t place)
   return fmax(0, s->plane - scattered_outwards(s, place));
 }
 
-/** Volume times the share of the bonds that reach through the face. */
+/** Returns the volume of a particle times the share of its bonds that cross the face. */
 static double scattered_profile(const Scattered *s, int64_t place)
 {
   const double z = scattered_depth(s, place) / s->horizon;
   return z < 1 ? s->making->body->particles.volume[place] * pow(1 - z * z, 0.5 * (s->tangents + 2)) : 0;
 }
 
-/** Scales the areas told to the area of the face. @return false: they are none, or far from the area */
+/** Scales the areas to the area of the face. @return false: there are none, or their sum is far from the area */
 static bool scattered_scale(const Scattered *s, double area)
 {
   const int64_t places = s->making->body->particles.places;
@@ -193,8 +195,8 @@ static bool scattered_scale(const Scattered *s, double area)
   return true;
 }
 
-/** Asks the formulation, by its even stress or by the forces of an even pull.
- *  @param[out] told  false: neither tells */
+/** Queries the formulation for the areas, by its uniform stress or by the forces of a uniform pull.
+ *  @param[out] told  false: neither gives areas */
 static int scattered_ask(const Scattered *s, double area, bool *told)
 {
   const EvenStress *even = &s->making->even_stress;
@@ -209,8 +211,8 @@ static int scattered_ask(const Scattered *s, double area, bool *told)
   return status;
 }
 
-/** Finds first estimates of areas, in area[0].
- *  @param[out] count  how many particles have one */
+/** Computes first estimates of areas in area[0].
+ *  @param[out] count  number of particles with an area */
 static int scattered_estimate(Scattered *s, double area, int64_t *count)
 {
   const Particles *p = &s->making->body->particles;
@@ -231,7 +233,7 @@ static int scattered_estimate(Scattered *s, double area, int64_t *count)
 
 /* ---- moments ---- */
 
-/** Functions of which the sums are those over the face, in half sizes of the face and horizons of depth. */
+/** Evaluates the functions f at a particle, in half sizes of the face and horizons of depth. @return their number */
 static int scattered_functions(const Scattered *s, int64_t place, double f[MOST_MOMENTS])
 {
   const Particles *p = &s->making->body->particles;
@@ -246,7 +248,7 @@ static int scattered_functions(const Scattered *s, int64_t place, double f[MOST_
   return count;
 }
 
-/** Integrals of the functions over the face: of a segment or a rectangle. */
+/** Computes the integrals of the functions f over the face, a segment or a rectangle. */
 static void scattered_integrals(const Scattered *s, double area, double wanted[MOST_MOMENTS])
 {
   const int first = 2 + s->tangents;
@@ -256,7 +258,7 @@ static void scattered_integrals(const Scattered *s, double area, double wanted[M
   if (s->tangents == 2) wanted[first + 2] = area / 3;
 }
 
-/** Corrects areas so that the sums of the first functions are right. @return false: particles are too few for that */
+/** Corrects areas so that the sums of the first functions are exact. @return false: there are too few particles */
 static bool scattered_correct(const Scattered *s, int functions, const double wanted[MOST_MOMENTS])
 {
   const Particles *p = &s->making->body->particles;
@@ -286,7 +288,7 @@ static bool scattered_correct(const Scattered *s, int functions, const double wa
   return true;
 }
 
-/** Corrects as many moments as the particles allow; the force in all ever. */
+/** Corrects as many moments as the number of particles allows; the resultant force at least. */
 static void scattered_balance(const Scattered *s, double area)
 {
   const bool linear = s->load->type == &water_pressure_load;
@@ -296,14 +298,14 @@ static void scattered_balance(const Scattered *s, double area)
   scattered_integrals(s, area, wanted);
   for (int k = 0; k < 4; ++k) {
     if (!scattered_correct(s, tries[k], wanted)) continue;
-    scattered_correct(s, tries[k], wanted); /* roundings */
+    scattered_correct(s, tries[k], wanted); /* removes round-off */
     return;
   }
 }
 
 /* ---- making ---- */
 
-/** Writes the areas to the face, and lists particles beside those of the load. */
+/** Stores the areas in the face, and lists the particles outside of the load's selection. */
 static int scattered_store(const Scattered *s, Load *load, int64_t count, Error *error)
 {
   const Particles *p = &s->making->body->particles;

@@ -1,5 +1,5 @@
 /* Elastic springs: from each particle to the ground, the stiffness shared by volume; or one between the mean displacements of two sets of
- * particles, on which it pulls like a force that is shared by volume. One that only presses has no force and no
+ * particles, on which it pulls like a force that is shared by volume. A spring that only presses has no force and no
  * stiffness where it would pull. */
 #include "loading/load/load_parts.h"
 #include "loading/one_sided.h"
@@ -53,7 +53,7 @@ const Section spring_load_section = {
 typedef struct Spring {
   double stiffness, direction[3];
   bool directed;
-  double presses;      /* 1 or -1: it only presses, along its direction or against it; 0: it also pulls */
+  double presses;      /* 1 or -1: the spring only presses, along its direction or against it; 0: it also pulls */
   double other_volume; /* of the other end */
   double *from[3]; /* to the ground: [particles] displacements when it began; between two ends: [1] their difference */
   double pull[3];  /* between two ends: the force on the first, as of the last step */
@@ -90,7 +90,7 @@ static int aim(Spring *spring, const Load *load, const LoadMaking *making)
   return BRECCIA_OK;
 }
 
-/** Finds the side from which a spring that only presses pushes; one between two ends pushes these apart. */
+/** Finds the side from which a spring that only presses pushes; a spring between two ends pushes the ends apart. */
 static int spring_find_side(Spring *spring, const Load *load, const LoadMaking *making)
 {
   const Particles *p = &making->body->particles;
@@ -110,9 +110,11 @@ static int spring_find_side(Spring *spring, const Load *load, const LoadMaking *
     spring->presses = one_sided_find_side(load, making, spring->direction);
   if (spring->presses != 0) return BRECCIA_OK;
   return node_error(making->reader->document, node, making->reader->error,
-                    joins(load) ? "only presses: the ends of the spring do not stand apart along its direction"
-                                : "only presses: the body lies on both sides of these particles along the spring; "
-                                  "select only particles at the face that it touches");
+                    joins(load)
+                        ? "only presses: the ends of the spring are at one position along its direction, so that the "
+                          "side from which it pushes is unknown; give another 'direction'"
+                        : "only presses: the body lies on both sides of these particles along the spring; "
+                          "select only particles at the face that it touches");
 }
 
 static int create(Load *load, const LoadMaking *making)
@@ -142,7 +144,7 @@ static void destroy(Load *load)
   free(spring);
 }
 
-/** What is left of a change of displacements in the spring's direction. @return its size along that, 0 without one */
+/** Projects a change of displacements on the spring's direction, if there is one. @return size along it, or 0 */
 static double project(const Spring *spring, double change[3])
 {
   if (!spring->directed) return 0;
@@ -161,7 +163,7 @@ static bool spring_keep(const Spring *spring, double change[3])
   return !open;
 }
 
-/** Finds by how much the ends have moved against each other. @return false if the spring has let go */
+/** Computes the relative displacement of both ends. @return false if the spring has let go */
 static bool change_between(const Load *load, const Particles *p, double change[3])
 {
   const Spring *spring = load->own;
@@ -171,7 +173,7 @@ static bool change_between(const Load *load, const Particles *p, double change[3
   return spring_keep(spring, change);
 }
 
-/** Finds by how much the n-th particle has moved. @return false if the spring has let go */
+/** Computes the displacement of the n-th particle. @return false if the spring has let go */
 static bool change_at(const Load *load, const Particles *p, int64_t n, double change[3])
 {
   const Spring *spring = load->own;

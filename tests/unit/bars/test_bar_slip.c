@@ -554,7 +554,7 @@ static void words_tell_bond_and_slip(void **state)
   }
 }
 
-/** The largest compression of concrete is told beside the least compressive strength that bonds of bars give it. */
+/** The summary prints the largest compression of concrete and the smallest compressive strength of its bar bonds. */
 static void the_least_strength_of_all_bonds_is_told(void **state)
 {
   (void)state;

@@ -1,5 +1,5 @@
-/* Bodies of bonds that crush (fib-concrete): what lattices and prisms carry in uniaxial compression, and what
- * pressure across does to bonds. */
+/* Bodies of crushing bonds (fib-concrete): strength of lattices and prisms in uniaxial compression, and the effect of
+ * pressure across bonds. */
 #include "support.h"
 
 #define LAW                                                                                                            \
@@ -8,7 +8,7 @@
   "  m: {model: fib-concrete, density: 2.4e-9, Young modulus: %g, tensile strength: 2.9, fracture energy: 0.14,\n"     \
   "      compressive strength: %g, peak strain: %g}\n"
 
-/** Largest stress of a uniform strain with free sides, over f_c. */
+/** Returns the largest stress in uniaxial compression with free sides, over f_c. */
 static double crushing_along(const breccia_model *m, double x, double y, double z)
 {
   const double length = sqrt(x * x + y * y + z * z), n[3] = {x / length, y / length, z / length};
@@ -46,7 +46,7 @@ static void lattices_crush_at_the_strength_given(void **state)
     }
 }
 
-/** Resultant along y on the particles above a height. */
+/** Returns the resultant along y on the particles above a height. */
 static double force_above(const breccia_model *m, double height)
 {
   const Particles *p = m->domain.particles;
@@ -58,7 +58,7 @@ static double force_above(const breccia_model *m, double height)
   return force;
 }
 
-/** A prism of 100 mm by 200 mm between smooth platens carries 38 MPa, where one that cannot crush would go on. */
+/** A prism of 100 mm by 200 mm between smooth platens carries 38 MPa; without crushing the stress would increase on. */
 static void a_prism_between_smooth_platens_crushes_at_its_strength(void **state)
 {
   (void)state;
@@ -84,7 +84,7 @@ static void a_prism_between_smooth_platens_crushes_at_its_strength(void **state)
   breccia_model_destroy(&m);
 }
 
-/** Largest damage of the bonds of a body led to an even strain. */
+/** Returns the largest damage of the bonds of a body at a uniform strain. */
 static double damage_at(const char *space, const char *shape, const char *field)
 {
   breccia_model *m =
@@ -102,9 +102,9 @@ static double damage_at(const char *space, const char *shape, const char *field)
   return most;
 }
 
-/** In pure shear the stress along a bond is 3/4 E e in plane stress and 4/5 E e else, where it is E e of the bond: damage
- * begins where the body has f_t, up to the faces. Pulled both ways nothing presses across, and bonds have f_t themselves.
- * f_t / E = 8.79e-5. */
+/** In pure shear with the strain e along a bond the body has the stress 3/4 E e in plane stress and 4/5 E e otherwise;
+ * the bond has E e. Damage begins at f_t of the body, up to the faces. Under equal tension in two directions there is
+ * no pressure across bonds, and damage begins at f_t of the bond. f_t / E = 8.79e-5. */
 static void pressure_across_counts_in_bodies(void **state)
 {
   (void)state;
@@ -121,8 +121,8 @@ static void pressure_across_counts_in_bodies(void **state)
   assert_near(damage_at("3-D", solid, "[-1e-3 * x, 2.5e-4 * y, 2.5e-4 * z]"), 0, 0);
 }
 
-/** Stress of the curve of the law once strained, compression positive, with an exponential fall that spends 35 N/mm over
- * a length. */
+/** Returns the stress of the law under monotonic strain; compression is positive. The exponential descent spends 35
+ * N/mm over a length. */
 static double curve_at(double strain, double length)
 {
   const double k = 33000 * 0.0022 / 38, eta = strain / 0.0022;
@@ -130,7 +130,7 @@ static double curve_at(double strain, double length)
   return eta < 1 ? 38 * (k * eta - eta * eta) / (1 + (k - 2) * eta) : 38 * exp(-(strain - 0.0022) * 38 * length / 35);
 }
 
-/** Largest force of a plane section of height 100 and width 100 at an eccentricity, without tension. */
+/** Returns the largest force on a plane section of height 100 and width 100 at an eccentricity, without tension. */
 static double force_of_section(double eccentricity, double length)
 {
   enum { LAYERS = 200 };
@@ -156,8 +156,8 @@ static double force_of_section(double eccentricity, double length)
   return most;
 }
 
-/** A prism of 100 mm by 200 mm pressed 15 mm off its axis, as the compression zone of a beam, which cracks on the other
- * side: by equilibrium of plane sections 251 kN. */
+/** A prism of 100 mm by 200 mm with an eccentricity of 15 mm acts as the compression zone of a beam and cracks on the
+ * far side. Equilibrium of plane sections gives 251 kN. */
 static void a_prism_pressed_off_its_axis_carries_what_its_section_does(void **state)
 {
   (void)state;

@@ -54,7 +54,7 @@ static void strength_grows_with_the_length_of_softening(void **state)
   }
 }
 
-/** A polygon of a strip that leads from the origin along a direction: from one place on it to another. */
+/** Writes the polygon of a part of a strip that starts at the origin along a direction, between two distances. */
 static char *part_of_strip(char *words, size_t size, const double along[2], double from, double to, double half)
 {
   double corner[4][2];
@@ -70,7 +70,7 @@ static char *part_of_strip(char *words, size_t size, const double along[2], doub
 
 enum { STRIP_LENGTH = 150, STRIP_STEPS = 20 };
 
-/** Pulls a strip at rest whose middle softens and whose ends do not. @return its largest stress in MPa */
+/** Pulls a strip in static increments; its middle softens, its ends do not. @return largest stress [MPa] */
 static double strip_peak(const char *law, const char *lattice, const char *horizon, double angle, const char *keys)
 {
   const double pi = acos(-1), along[2] = {cos(pi * angle / 180), sin(pi * angle / 180)}, half = 29.9, pulled = 0.03;
@@ -113,8 +113,8 @@ static double strip_peak(const char *law, const char *lattice, const char *horiz
   return most;
 }
 
-/** A strip carries the tensile strength of the deck in the strongest direction of its lattice, never more than 5 %
- *  more, and as much less in the others as is told. */
+/** A strip carries the tensile strength of the deck in the strongest direction of its lattice, and never more than 5 %
+ *  in excess. In other directions it carries the share that `check` prints. */
 static void strips_carry_their_tensile_strength(void **state)
 {
   (void)state;
@@ -134,7 +134,7 @@ static void strips_carry_their_tensile_strength(void **state)
   }
 }
 
-/** With the strength of bonds a strip carries what is told of its lattice. */
+/** With `strength of: bonds` a strip carries the multiple that `check` prints for its lattice. */
 static void strips_of_strong_bonds_carry_what_is_told(void **state)
 {
   (void)state;
@@ -151,7 +151,7 @@ static void strips_of_strong_bonds_carry_what_is_told(void **state)
   assert_near(peak / 3 / told, 1, 0.05);
 }
 
-/** Returns what the body of a model carries in its strongest direction, over the tensile strength of its deck. */
+/** Returns the strength of a model's body in its strongest direction, over the tensile strength of the deck. */
 static double strongest(const char *body, const char *peridynamics, const char *strain)
 {
   breccia_model *m = model_of("units: {length: mm, force: N, time: s}\n"
@@ -166,7 +166,8 @@ static double strongest(const char *body, const char *peridynamics, const char *
   return most;
 }
 
-/** In space, in the plane, and where strains have limits. The diagonals of a cube are its strongest directions. */
+/** Bodies in space, in the plane and with limits of strain carry the tensile strength of the deck. The diagonals of a
+ *  cube are its strongest directions. */
 static void bodies_carry_their_tensile_strength(void **state)
 {
   (void)state;
@@ -179,7 +180,7 @@ static void bodies_carry_their_tensile_strength(void **state)
   assert_true(strongest(cube, ", strength of: bonds", "") > 1.5);
 }
 
-/** What a crack takes per area does not change with the strength of bonds. */
+/** The fracture energy of a crack per area does not depend on the strength of bonds. */
 static void the_fracture_energy_stays(void **state)
 {
   (void)state;
@@ -212,8 +213,8 @@ static void the_fracture_energy_stays(void **state)
   assert_near(area[0], area[1], 1e-5);
 }
 
-/** The share of the tensile strength that bonds take makes up for the direction in which a lattice carries the most: the
- * larger number of the band told is 1. */
+/** Bonds take a share of the tensile strength for which the strongest direction of a lattice carries that strength: the
+ * upper end of the printed band is 1. */
 static void the_strongest_direction_decides(void **state)
 {
   (void)state;

@@ -315,7 +315,7 @@ static double pushed_footing(const char *fades, double strength, double *before,
 static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
 {
   (void)state;
-  if (under_sanitizers()) skip(); /* the slope walks the same code */
+  if (under_sanitizers()) skip(); /* the slope covers the same code */
   double before, kept_before, held, kept_held, elastic, elastic_held;
   const double limit = pushed_footing(", fades: yielding", 1, &before, &held),
                kept = pushed_footing("", 1, &kept_before, &kept_held);
@@ -325,14 +325,14 @@ static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
   pushed_footing("", 100, &elastic, &elastic_held); /* nothing has yielded, whatever control holds at the edge */
   assert_true(elastic_held == 0);
   assert_true(limit / before < 1.005);
-  assert_near(limit, 5.14, 0.1 * 5.14); /* ten particles across the width, which clay feels as eleven */
+  assert_near(limit, 5.14, 0.1 * 5.14); /* ten particles across the width act as a width of eleven */
   assert_true(kept > 1.25 * limit && kept / kept_before > 1.02);
 }
 
 /** A vertical cut in clay, eight spacings high: gamma H / s_u = 3.776 (bounds of 3.7752 and 3.7776:
  * Kammoun et al. 2010, Int. J. Numer. Anal. Meth. Geomech., doi 10.1002/nag.887).
- *  @param[in] load  share of that weight
- *  @return true if the cut stands under it */
+ *  @param[in] load  share of the limit weight
+ *  @return true if the cut is stable under this weight */
 static bool cut_stands(double load)
 {
   breccia_model *m = model_of(
@@ -356,8 +356,8 @@ static bool cut_stands(double load)
   return status == 0;
 }
 
-/** Slip lines are narrower than families, which see a part of their motion as strain: control does not hold the rest. A
- * cut stood under 1.15 of its limit load where control faded with the stiffness of laws alone. */
+/** Slip lines are narrower than families, whose strain contains a part of their motion: control does not resist the
+ * other part. A cut was stable under 1.15 of its limit load when control faded only with the stiffness of laws. */
 static void vertical_cuts_fail_at_their_limit_load(void **state)
 {
   (void)state;

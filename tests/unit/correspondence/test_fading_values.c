@@ -85,7 +85,7 @@ static double stored_of(const breccia_model *m, int32_t place, const double whol
   return sum;
 }
 
-/** Root of the second invariant of the stress of a particle. */
+/** Returns the root of the second deviatoric invariant J_2 of the stress of a particle. */
 static double shear_stress(const breccia_model *m, int32_t place)
 {
   double squares = 0, mean = 0, s[6];

@@ -1,4 +1,5 @@
-/* Why bonds broke: causes, values and limits of all criteria, positions inside the body, and the same after a restart. */
+/* Reasons of broken bonds: causes, values and limits of all criteria, positions inside the body; identical reasons
+ * after a restart. */
 #include "support.h"
 
 #include "domain/domain.h"
@@ -6,7 +7,7 @@
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define HOOKE "model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25"
 
-/** A notched plate of one formulation, torn at the given pace. */
+/** Creates a notched plate of one formulation that is torn at a given rate. */
 static breccia_model *plate_of(int threads, const char *formulation, const char *failure, const char *solver)
 {
   return model_on(threads,
@@ -24,7 +25,7 @@ static breccia_model *plate_of(int threads, const char *formulation, const char 
 
 static const struct {
   const char *formulation, *failure;
-  double limit; /* of the criterion */
+  double limit; /* limit of the criterion */
 } plates[] = {
     {"formulation: bond-based, horizon: 3.015 spacings", "critical stretch: 2e-3", 2e-3},
     {"formulation: hybrid, horizon: 1.5 spacings", "criterion: critical bond stress, bond tensile strength: 20", 20},
@@ -64,7 +65,7 @@ static void broken_bonds_tell_value_limit_and_place(void **state)
     }
 }
 
-/** In a body without images the stretch told is that of the positions at the time of the break. */
+/** In a body without images the stored stretch equals the stretch of the positions at the time of the break. */
 static void stretch_told_is_that_of_the_two_particles(void **state)
 {
   (void)state;

@@ -292,10 +292,10 @@ typedef struct Strip {
   int increments;
 } Strip;
 
-/** Opens a strip by a wedge at rest.
- *  @param[in] degrees  direction of the crack to the rows of the lattice
+/** Opens a strip by a wedge in static increments.
+ *  @param[in] degrees  angle between the crack and the rows of the lattice
  *  @param[out] taken  energy of fracture and damage over the fracture energy of the ligament
- *  @return work of the loads less the energy that is stored at the end, over the same */
+ *  @return work of the loads less the stored energy at the end, over the fracture energy of the ligament */
 static double strip_takes(const Strip *strip, const char *law, const char *peridynamics, const char *failure,
                           int degrees, double *taken)
 {
@@ -311,7 +311,7 @@ static double strip_takes(const Strip *strip, const char *law, const char *perid
       at += snprintf(corners[b] + at, sizeof corners[b] - (size_t)at, "%s[%.12f, %.12f]", k ? ", " : "",
                      c * points[k][0] - s * points[k][1], s * points[k][0] + c * points[k][1]);
   }
-  for (int k = 0; k < 2; ++k) /* it turns about a point on the line of the crack */
+  for (int k = 0; k < 2; ++k) /* the strip turns about a point on the line of the crack */
     field[k] = text_format("%.12g*(%.12f*(%.12f*x+%.12f*y)%+.12f*(%.12g m-(%.12f*x+%.12f*y)))", strip->turn, k ? s : c,
                            -s, c, k ? c : -s, strip->hinge, c, s);
   deck = text_format(
@@ -347,7 +347,7 @@ static void cracks_through_softening_points_take_the_fracture_energy_along_diago
   const double felt =
       strip_takes(&small, "model: mazars, Poisson ratio: 0.2, tensile strength: 3e6, fracture energy: 100",
                   "formulation: hybrid", "", 45, &taken);
-  assert_near(felt, 0.97, 0.05); /* points that are strained little are not through yet */
+  assert_near(felt, 0.97, 0.05); /* points with small strains have not softened fully */
   assert_near(taken, felt, 0.01);
 }
 
@@ -359,7 +359,7 @@ static void broken_bonds_take_what_check_tells(void **state)
                                    "failure: {fracture energy: 100, near grips: hold}\n", 0, &taken);
   assert_near(taken, 1, 0.05);
   assert_near(felt, 1.45, 0.1);
-  /* Hybrid bonds that others leave without anything to carry have their share in what was shed. */
+  /* The fracture energy includes the energy of stranded hybrid bonds, taken from the shed energy. */
   felt = strip_takes(&strip, "model: elastic, Poisson ratio: 0.2", "formulation: hybrid",
                      "failure: {criterion: critical bond energy, fracture energy: 100, near grips: hold}\n", 0, &taken);
   assert_near(taken, 0.52, 0.05);

@@ -1,6 +1,6 @@
-/* Interfaces of two materials in bodies of hybrid bonds. A state that is uniform in each of two layers, with one strain
- * along the interface and one traction across it, is in equilibrium on all particles, whichever way the body is turned,
- * and its energy is that of Hooke's law. */
+/* Interfaces of two materials in bodies of hybrid bonds. A state that is uniform in each of two layers, with equal
+ * strain along the interface and equal traction across it, is in equilibrium on all particles for any rotation of the
+ * body. Its energy is that of Hooke's law. */
 #include "support.h"
 
 #include <unistd.h>
@@ -11,14 +11,14 @@
 typedef struct Layers {
   const char *lattice, *space, *words; /* words: more keys of the formulation */
   double spacings, contrast, turn;     /* turn [rad] in the plane */
-  double poisson[2];                   /* of the lower and the upper layer */
-  bool flows;                          /* laws that remember, far from their limits */
-  double along, stretch, slide;        /* strain along the interface; of the lower layer across and its shear strain */
+  double poisson[2];                   /* Poisson's ratios of the lower and the upper layer */
+  bool flows;                          /* laws with a history, far from their limits */
+  double along, stretch, slide;        /* strains along and across the interface and in shear; lower layer */
 } Layers;
 
-static const double stiff = 1e6, scale = 1e-13; /* Young's modulus of the lower layer; of strains */
+static const double stiff = 1e6, scale = 1e-13; /* Young's modulus of the lower layer; scale of strains */
 
-/** Moduli of a layer in the body's space. */
+/** Returns the moduli of a layer in the body's space. */
 typedef struct Moduli {
   double across, lame, shear;
 } Moduli;
@@ -31,7 +31,7 @@ static Moduli moduli_of(const Layers *of, int layer)
   return (Moduli){lame + 2 * shear, lame, shear};
 }
 
-/** Strain across a layer and its shear strain: tractions are those of the lower layer. */
+/** Computes the strain across a layer and its shear strain for the tractions of the lower layer. */
 static void strain_across(const Layers *of, int layer, double *stretch, double *slide)
 {
   const Moduli lower = moduli_of(of, 0), own = moduli_of(of, layer);
@@ -48,8 +48,7 @@ static char *material_words(const Layers *of, int layer)
 
 enum { COLUMNS = 18, ROWS = 12 }; /* rows of each layer */
 
-/** Returns true if the body comes from files: turned ones, and hexagonal lattices whose rows go on across the interface.
- */
+/** Returns true if the body comes from files: turned bodies, and hexagonal lattices with rows across the interface. */
 static bool from_files(const Layers *of)
 {
   return of->turn != 0 || !strcmp(of->lattice, "hexagonal");
@@ -107,7 +106,7 @@ static breccia_model *layers_of(const Layers *of)
   return m;
 }
 
-/** Distance of a particle from the interface, and along it. */
+/** Computes the distances of a particle from the interface and along it. */
 static void place_in_layers(const Layers *of, const breccia_model *m, int32_t i, double *along, double *across)
 {
   double *const *x = m->domain.particles->position;
@@ -134,13 +133,14 @@ static void displace(const Layers *of, breccia_model *m)
   }
 }
 
-/** Largest internal force on particles farther than two horizons from all faces, over stress by spacing. */
+/** Returns the largest internal force per volume on particles farther than two horizons from all faces, over the ratio
+ *  of stress to spacing. */
 static double largest_force(const Layers *of, breccia_model *m)
 {
   const Particles *p = m->domain.particles;
   const bool solid = !strcmp(of->space, "3-D");
   const double margin = 2 * of->spacings + 0.5, stress = scale * stiff;
-  double largest = NAN; /* no particle was looked at */
+  double largest = NAN; /* NaN if no particle is far enough from the faces */
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double x, y;
@@ -154,7 +154,7 @@ static double largest_force(const Layers *of, breccia_model *m)
   return largest;
 }
 
-/** Uniform states: along the interface, across it, and in shear. */
+/** Uniform states along the interface, across it and in shear are in equilibrium. */
 static const double states[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 static void assert_in_equilibrium(Layers of)
@@ -192,7 +192,8 @@ static void uniform_layers_are_in_equilibrium(void **state)
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k) assert_in_equilibrium(of[k]);
 }
 
-/** Stiffness along the interface of two layers of six rows, of the energy that they store, over the sum of both. */
+/** Returns the stiffness of two layers of six rows along the interface, from the stored energy, over the sum of both
+ *  layers' stiffness. */
 static double stiffness_along(double spacings, double contrast, const char *space)
 {
   enum { ALONG = 24, LAYER = 6 };

@@ -1,5 +1,5 @@
-/* What `check` tells of interfaces of two materials: in bodies of hybrid bonds nothing where they lie along rows of
- * particles, which is exact. */
+/* Text of `check` on interfaces of two materials. In bodies of hybrid bonds `check` prints nothing for interfaces along
+ * rows of particles, which are exact. */
 #include "support.h"
 
 #include "model/plausibility.h"
@@ -22,7 +22,7 @@ static void write_side(const char *name, double slope, bool above)
   fclose(file);
 }
 
-/** Returns what is told of a body whose upper half is ten times stiffer, to be freed. */
+/** Returns the text of `check` on a body whose upper half is ten times stiffer; owned by the caller. */
 static char *told_of(const char *formulation, double slope)
 {
   write_side(FILES "_0.csv", slope, false);

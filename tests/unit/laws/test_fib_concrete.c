@@ -1,5 +1,5 @@
-/* Concrete along one bond by fib-concrete, against its closed form: the curve of fib Model Code 2010, eq. 5.1-26, the
- * crushing energy beyond the peak, tension as exponential-softening, and what pressure across the bond changes. */
+/* Concrete along one bond by fib-concrete, against closed forms: the curve of fib Model Code 2010, eq. 5.1-26, the
+ * crushing energy beyond the peak, tension as exponential-softening, and the effect of pressure across the bond. */
 #include "point.h"
 
 #include "base/random.h"
@@ -109,8 +109,8 @@ static void tension_is_that_of_exponential_softening(void **state)
   material_destroy(&other);
 }
 
-/** A bond that pressure across elongates by 2e-4 stays whole to 3e-4; the elongation counts up to half of the peak
- * strain. */
+/** A bond with an elongation of 2e-4 by pressure across has no damage up to a strain of 3e-4. The elongation is limited
+ * to half of the peak strain. */
 static void pressure_across_stretches_bonds_without_damage(void **state)
 {
   (void)state;
@@ -127,7 +127,7 @@ static void pressure_across_stretches_bonds_without_damage(void **state)
   material_destroy(&b.material);
 }
 
-/** Where something presses across a bond that cracks the tangent is the secant. */
+/** Under pressure across a cracking bond the tangent is the secant. */
 static void tangents_are_slopes(void **state)
 {
   (void)state;
@@ -147,7 +147,8 @@ static void tangents_are_slopes(void **state)
   material_destroy(&b.material);
 }
 
-/** Works of walks by chance in strain and in pressure across: a whole point stores nothing, so that none is negative. */
+/** Random walks in strain and in pressure across do work that is never negative, because an undamaged point stores
+ *  nothing. */
 static void no_walk_makes_energy_whatever_presses_across(void **state)
 {
   (void)state;

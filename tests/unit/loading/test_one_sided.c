@@ -1,5 +1,5 @@
-/* Supports that only press: beams that lift off, eccentric loads on a bed without tension, bars that bounce; against
- * closed forms and against the same bodies with and without the support. */
+/* One-sided supports: beams that lift off, eccentric loads on a bed without tension, bars that bounce. References are
+ * closed forms, and the bodies with a two-sided support and without a support. */
 #include "support.h"
 
 #include "loading/constraint.h"
@@ -45,7 +45,7 @@ static int64_t open_entries(const breccia_model *m)
 
 /* ---- a beam on three supports ---- */
 
-/* Its weight presses it on the middle support, and a force there lifts it off. */
+/* The weight of the beam presses it on the middle support, and a force at the middle lifts it off. */
 #define BEAM                                                                                                           \
   MATERIAL                                                                                                             \
   "body: {b: {material: m, lattice: square, spacing: 10, thickness: 50, shape: {box: {from: [0, 0], to: [410, "        \
@@ -58,7 +58,7 @@ static int64_t open_entries(const breccia_model *m)
 
 static const double weight = 1e-5 * 410 * 40 * 50; /* kN */
 
-/** Returns the displacement of the middle under its weight and a force, without the middle support. */
+/** Returns the displacement of the middle of the beam under weight and a force, without the middle support. */
 static double free_deflection(double lift)
 {
   breccia_model *m = model_of(BEAM LIFT "solve: {static: {end time: 1, increments: 1}}\n", lift);
@@ -72,8 +72,7 @@ static void a_beam_lifts_off_its_middle_support(void **state)
 {
   (void)state;
   const double bent = -free_deflection(0), compliance = (free_deflection(0.1) + bent) / 0.1;
-  const double bears =
-      bent / compliance; /* the reaction of a middle support that holds: its force undoes the bending */
+  const double bears = bent / compliance; /* reaction of a two-sided middle support, which cancels the deflection */
   assert_near(bears, 0.625 * weight * 400 / 410, 0.03 * bears); /* a continuous beam of two spans */
   static const char *const solvers[] = {"increments: 8", "increments: 8, equations: conjugate gradients",
                                         "increments: 8, equations: minimal residuals",
@@ -94,7 +93,7 @@ static void a_beam_lifts_off_its_middle_support(void **state)
   }
 }
 
-/** A support that begins in a later stage stands where the body is then. */
+/** A support that begins in a later stage is at the current position of the body. */
 static void a_support_begins_where_the_body_is(void **state)
 {
   (void)state;
@@ -113,7 +112,7 @@ static void a_support_begins_where_the_body_is(void **state)
   breccia_model_destroy(&m);
 }
 
-/** Work goes into the body and comes back: a support that opens and closes takes none. */
+/** The work done on the body is recovered: a support that opens and closes does no work. */
 static void lift_off_makes_no_energy(void **state)
 {
   (void)state;
@@ -134,7 +133,7 @@ static void lift_off_makes_no_energy(void **state)
   breccia_model_destroy(&m);
 }
 
-/* The same beam upside down, in other units, and turned. */
+/* The beam upside down, in other units, and turned. */
 static void other_views_of_a_beam_are_the_same(void **state)
 {
   (void)state;
@@ -219,7 +218,7 @@ static void an_eccentric_load_tips_a_block_on_rollers(void **state)
     step_surely(m, 10);
     const Wrench w = wrench_of(m, "base");
     assert_near(w.force[1], 10, 1e-6);
-    assert_near(w.moment[2], 10.0 * x, 0.1); /* strains are small, arms those of the deformed body */
+    assert_near(w.moment[2], 10.0 * x, 0.1); /* lever arms are those of the deformed body */
     const Constraint *c = one_sided_of(m);
     for (int64_t n = 0; n < c->one_sided->count; ++n) {
       const double u = constraint_along(c, m->domain.particles->displacement, c->load->selection.places[n]);
@@ -296,7 +295,7 @@ static void a_bar_bounces_off_a_wall(void **state)
     assert_near(impulse, 2e-3, 6e-5);
     assert_true(open_entries(m) == 1);
     const Energy e = solver_energy(&m->solver);
-    assert_near(e.kinetic + e.stored, 0.5e-6, 0.02 * 0.5e-6); /* a hundredth of the bar strikes plastically */
+    assert_near(e.kinetic + e.stored, 0.5e-6, 0.02 * 0.5e-6); /* a hundredth of the bar has a plastic impact */
     assert_near(e.external, 0, 0.005 * 0.5e-6);
     assert_balanced(m, 1e-3);
     breccia_model_destroy(&m);
@@ -314,7 +313,7 @@ static void a_bar_bounces_off_a_wall(void **state)
   "loads:\n  - {on: {nearest: [5, 5]}, displacement: [0, 0]}\n  - {on: {nearest: [395, 5]}, displacement: [free, "     \
   "0]}\n"
 
-/** A jack that goes down and up beyond where it met the beam presses as one that holds, and then leaves the beam. */
+/** A jack moves down, and up beyond its first contact. It presses like a two-sided jack, and then leaves the beam. */
 static void a_jack_leaves_its_beam(void **state)
 {
   (void)state;
@@ -350,7 +349,7 @@ static void a_jack_leaves_its_beam(void **state)
   }
 }
 
-/* ---- bits ---- */
+/* ---- bitwise reproducibility ---- */
 
 static breccia_model *lifted_beam(int threads)
 {
@@ -399,7 +398,7 @@ static void threads_and_restarts_change_no_bit(void **state)
   for (int half = 10; half < 60; half += 24) assert_same_bits_by_threads_and_restart(struck_beam, half, 70);
 }
 
-/* ---- what is refused ---- */
+/* ---- refused decks ---- */
 
 static void what_cannot_only_press_is_refused(void **state)
 {

@@ -156,7 +156,7 @@ static void a_base_comes_to_rest_where_it_began(void **state)
       assert_near(history_integral(history_of(rest), order, 1, end), 0, 1e-10);
       assert_near(history_integral(history_of(rest), order, 1, end + 2), 0, 1e-10);
     }
-    /* A straight line is what it differs by. */
+    /* Both differ by a straight line. */
     double off[3];
     for (int k = 0; k < 3; ++k) {
       const double time = begin + 2 + 3 * k;

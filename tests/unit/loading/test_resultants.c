@@ -138,8 +138,7 @@ static void waves_push_what_moves_the_bar_and_then_the_dashpots(void **state)
   }
 }
 
-/** The largest force is that of the step in which it was largest, and not of some of the steps: a bar that is struck
- * by a motion of few steps. */
+/** The largest force is taken over all steps, not over a sample: a bar is struck by a motion that lasts few steps. */
 static void the_largest_of_explicit_steps_misses_none(void **state)
 {
   (void)state;
@@ -159,7 +158,7 @@ static void the_largest_of_explicit_steps_misses_none(void **state)
     find(model, r);
     largest = larger_of(largest, fabs(r[0].now[0]));
   }
-  assert_true(largest > 0.2); /* of 0.4, impedance times speed */
+  assert_true(largest > 0.2); /* the exact value is 0.4, impedance times speed */
   assert_near(fabs(r[0].largest[0]), largest, 1e-8 * largest);
   breccia_model_destroy(&model);
 }

@@ -1,5 +1,5 @@
-/* Tractions and pressures on faces of particles from files: force and moment are those of the face, and the stress of an
- * even traction is even up to the face. */
+/* Tractions and pressures on faces of particles from files: force and moment are those of the face, and a uniform
+ * traction causes a uniform stress up to the face. */
 #include "support.h"
 
 #include <unistd.h>
@@ -37,7 +37,7 @@ static void write_box(const int cells[3], double random)
   fclose(table);
 }
 
-/** A box from the file, with loads. */
+/** Creates a model of the box in the file, with loads. */
 static breccia_model *scattered(const char *peridynamics, bool plane, const char *loads, const char *solve)
 {
   breccia_model *m = model_of(
@@ -49,8 +49,8 @@ static breccia_model *scattered(const char *peridynamics, bool plane, const char
   return m;
 }
 
-/** Root of the mean square of the error of the stress along x, in the rows within some spacings of x = length, as a
- *  share of the traction. */
+/** Returns the root mean square error of the stress along x over the traction, in the rows within some spacings of
+ *  x = length. */
 static double stress_error(breccia_model *m, double from, double to, double traction)
 {
   const Particles *p = m->domain.particles;
@@ -67,8 +67,8 @@ static double stress_error(breccia_model *m, double from, double to, double trac
   return sqrt(sum / count);
 }
 
-/** A box of random particles in the plane or in space, held at x = 0 and pulled at its other end.
- *  @param[in] more  words behind the traction */
+/** Creates a box of random particles in the plane or in space, held at x = 0 and pulled at its other end.
+ *  @param[in] more  further keys of the traction */
 static breccia_model *pulled_box(const char *formulation, bool plane, const char *more)
 {
   const int cells[3] = {plane ? 30 : 14, plane ? 14 : 8, plane ? 1 : 8};
@@ -86,9 +86,9 @@ static breccia_model *pulled_box(const char *formulation, bool plane, const char
   return m;
 }
 
-/** The outermost particles alone would bear the traction unevenly, as the face holds them at several depths: 24 to 50 %
- *  off in the last two rows. What is left is what scattered families show in the middle of the body, and of ordinary
- *  families at its sides. */
+/** The outermost particles have several depths. A traction on them alone has errors of 24 to 50 % in the last two rows.
+ *  The remaining error is that of scattered families in the middle of the body, and of ordinary families at its
+ *  sides. */
 static void an_even_stress_reaches_scattered_faces(void **state)
 {
   (void)state;
@@ -114,7 +114,7 @@ static void an_even_stress_reaches_scattered_faces(void **state)
     }
 }
 
-/** Force and moment about the origin of all loads at factor 1. */
+/** Computes force and moment about the origin of all loads at factor 1. */
 static void find_resultants(breccia_model *m, double force[3], double moment[3])
 {
   Particles *p = m->domain.particles;
@@ -134,7 +134,8 @@ static void find_resultants(breccia_model *m, double force[3], double moment[3])
 static const char *const formulations[] = {"formulation: correspondence", "formulation: ordinary",
                                            "formulation: bond-based"};
 
-/** Tractions in all directions on the face y+ of a box of 20 x 14 (x 9), whose centre is known or is that of volumes. */
+/** Tractions in all directions on the face y+ of a box of 20 x 14 (x 9) have exact force and moment. The deck gives the
+ *  centre of the face, or the centre is that of the volumes behind the face. */
 static void force_and_moment_are_those_of_the_face(void **state)
 {
   (void)state;
@@ -165,7 +166,7 @@ static void force_and_moment_are_those_of_the_face(void **state)
       }
 }
 
-/** Pressure of water on a wall: linear, so that the second moments of the face count. */
+/** Water pressure on a wall has exact force and moment. It is linear, so that the second moments of the face matter. */
 static void water_presses_scattered_walls_with_its_moment(void **state)
 {
   (void)state;
@@ -186,7 +187,7 @@ static void water_presses_scattered_walls_with_its_moment(void **state)
   }
 }
 
-/** A centre that is none of the face would turn the body: it is refused. */
+/** A centre far from the face would turn the body: it is refused. */
 static void a_centre_elsewhere_is_refused(void **state)
 {
   (void)state;

@@ -171,9 +171,10 @@ static void halves_of_bars_move_as_whole_ones(void **state)
   for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
 }
 
-/** A bar of an ordinary and another block, and its half beyond a plane of symmetry: images of ordinary families beside
- *  the other block have the factors of their originals. The stiffness is symmetric: works of two states in each other are
- *  equal. Without the factors the bar beside images was as stiff as the lattice inside, and its half was not the whole. */
+/** Images of ordinary families beside another block have the factors of their originals. The test compares a bar of an
+ *  ordinary and another block with its half at a plane of symmetry. The stiffness is symmetric: the reciprocal works of
+ *  two states are equal. Without the factors the bar beside images had the
+ *  stiffness of the inner lattice, and its half differed from the whole bar. */
 static void halves_of_bars_of_two_formulations_move_as_whole_ones(void **state)
 {
   (void)state;

@@ -419,7 +419,7 @@ static void bodies_that_no_body_can_become_stop_the_run(void **state)
   breccia_model_destroy(&m);
   breccia_error_destroy(&error);
   error = breccia_error_create();
-  m = model_of(/* laws on bonds that flow keep their strength */
+  m = model_of(/* flowing laws on bonds keep their strength */
                "units: {length: m, force: kN, time: s}\n"
                "materials: {m: {model: j2, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, yield stress: 3 "
                "GPa}}\n"

@@ -262,7 +262,7 @@ static const struct {
     {"elastic-brittle, Young modulus: 1e4, tensile strength: 1e4", "bond-based", "[0, 0, 0.1]"},
 };
 
-/** All laws are in the table but those that bodies at rest take by secants. */
+/** The table contains all laws except those for which static solvers use secants. */
 static void every_law_is_among_them(void **state)
 {
   (void)state;
