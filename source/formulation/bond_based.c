@@ -42,9 +42,10 @@ static const Field bond_based_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondBasedSpec, strength_of),
      .standard = "body",
-     .meaning = "what carries the tensile strength of laws that soften: `body`, pulled one way in the direction in "
-                "which it carries most, so that bonds carry less; or `bonds`, as published, so that a body carries 1.1 "
-                "to 2 times as much. Laws without a fracture energy, bars and lines are of `bonds` always",
+     .meaning = "owner of the tensile strength of laws that soften. `body`: the body carries the strength under "
+                "uniaxial tension in its strongest direction, and bonds carry less. `bonds`: each bond carries the "
+                "strength, as published, and a body carries 1.1 to 2 times as much; always so for laws without a "
+                "fracture energy, bars and lines",
      .words = (const char *const[]){"body", "bonds", NULL}},
 };
 static const Section bond_based_section = {.name = "bond-based",
@@ -280,7 +281,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   return -1;
 }
 
-/** Tangents of bonds do not know how the pressure across changes with the strains of families. */
+/** Returns true if a law reads the pressure across bonds: tangents of bonds lack its derivative by family strains. */
 static bool takes_secants(const void *formulation)
 {
   return ((const BondBased *)formulation)->around != NULL;

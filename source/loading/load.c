@@ -40,15 +40,16 @@ static const Field load_fields[] = {
      .standard = "",
      .range = "(0, inf)",
      .meaning =
-         "of a traction, a pressure or a water pressure on particles from a file: the area of the face that they "
-         "stand at. On a plane face of one block the force is spread over the particles behind it such that "
-         "force and moments are those of the face; elsewhere particles take shares by volume"},
+         "area of the face on which particles from a file stand, for a traction, a pressure or a water pressure. On "
+         "a plane face of one block the force is spread over the particles behind the face such that force and "
+         "moments are those of the face; elsewhere particles take shares by volume"},
     {.key = "centre",
      .kind = FIELD_POINT,
      .offset = offsetof(LoadSpec, centre),
      .dimension = "length",
      .standard = "",
-     .meaning = "beside 'area': the centre of the face; when absent that of the volumes of the particles behind it"},
+     .meaning = "centre of the face, together with 'area'; when absent the centre of the volumes of the particles "
+                "behind the face"},
     {.key = "spread",
      .kind = FIELD_CHOICE,
      .offset = offsetof(LoadSpec, spread),
@@ -72,10 +73,10 @@ static const Field load_fields[] = {
      .kind = FIELD_FLAG,
      .offset = offsetof(LoadSpec, only_presses),
      .standard = "no",
-     .meaning = "yes: of a motion prescribed in one direction, a roller, or a spring with a direction: it pushes the "
-                "body away from the face where 'on' stands, lets go where it would pull, and presses again when the "
-                "body comes back. Each particle lets go by itself; a platen that turns lets go as a whole, and its "
-                "plate stays on the body"},
+     .meaning = "yes: the load pushes the body away from the face under 'on', lets go where it would pull, and "
+                "presses again when the body comes back. For a motion prescribed in one direction, a roller, or a "
+                "spring with a direction. Each particle lets go by itself; a platen that turns lets go as a whole, "
+                "and its plate stays on the body"},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \
    .kind = form,                                                                                                       \
@@ -94,7 +95,7 @@ static const Field load_fields[] = {
    .group = 'A'},
 #include "loading/load/loads.h"
 };
-/* Number of keys that all loads have; those of the types follow, one each. */
+/* Number of keys that all loads have; the keys of the load types follow, one for each type. */
 enum { OTHERS = sizeof load_fields / sizeof *load_fields - sizeof types / sizeof *types };
 
 /** Which load it is: its place in the list. */
