@@ -59,7 +59,7 @@ struct Correspondence {
   double *held[3];     /* C u, if neighbours read it */
   ControlFades fades;
   bool influence_falls; /* it is smaller at the horizon than at half of it */
-  Fading *fading; /* NULL: C stays as it is */
+  Fading *fading;       /* NULL: C stays as it is */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull
