@@ -105,9 +105,11 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns the criterion's value of a bond, without the temporary raise of limits that orders the breaking of bonds. */
+/** Returns the criterion's value of a bond, without the temporary raise of limits that orders the breaking of bonds; NaN
+ *  for criteria that tell none. */
 static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane, double *limit)
 {
+  if (!d->failure.criterion->measure) return NAN;
   const Bond bond = family_bond(&d->family, slice, slot, lane);
   const double beyond = d->failure.beyond;
   d->failure.beyond = 0;

@@ -59,7 +59,7 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   for (const double *row = numbers; row < numbers + count; row += NUMBERS_PER_BOND) {
     if (!(row[2] >= 0 && row[2] < particles && row[3] >= 0 && row[3] < particles)) return STATE_MISFIT;
     if (!(row[4] >= 0 && row[4] < BREAK_CAUSES)) return STATE_MISFIT;
-    const bool measured = row[4] == BREAK_LIMIT;
+    const bool measured = row[4] == BREAK_LIMIT && (row[5] != 0 || row[6] != 0);
     const BrokenBond bond = {
         (int64_t)row[0],        row[1], (int32_t)row[2], (int32_t)row[3], (BreakCause)row[4], measured ? row[5] : NAN,
         measured ? row[6] : NAN};

@@ -75,7 +75,7 @@ typedef struct Criterion {
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                   int lane);
   /** Returns the value of a bond and the limit with which the criterion compares it, both in `dimension`.
-   *  @param[out] limit  infinite for bonds that never break */
+   *  @param[out] limit  infinite for bonds that never break. NULL: unknown */
   double (*measure)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                     int lane, double *limit);
   const char *quantity; /* name of the value */

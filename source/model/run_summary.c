@@ -73,7 +73,7 @@ static void add_first_broken(const breccia_model *model, Text *text)
            "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, "
            "%.10g, %.10g], \"cause\": \"%s\", ",
            (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2], break_cause_word(first->cause));
-  if (first->cause != BREAK_LIMIT) {
+  if (isnan(first->value)) {
     text_add(text, "\"value\": null, \"limit\": null, \"unit\": \"\"},\n");
     return;
   }

@@ -33,7 +33,9 @@ static void why_bond(const ResultView *view, const BondReasons *of, const BondRe
   for (int k = 0; k < (view->plane ? 2 : 3); ++k) text_add(text, "%s%.6g", k ? ", " : "", bond->position[k]);
   text_add(text, "] %s: ", view->length_unit);
   const char *space = *of->unit ? " " : "";
-  if (bond->cause == BREAK_LIMIT)
+  if (bond->cause == BREAK_LIMIT && isnan(bond->value))
+    text_add(text, "'%s'\n", of->criterion);
+  else if (bond->cause == BREAK_LIMIT)
     text_add(text, "%s %.6g%s%s, limit %.6g%s%s\n", of->quantity, bond->value, space, of->unit, bond->limit, space,
              of->unit);
   else

@@ -22,7 +22,7 @@ int broken_bonds_create(hid_t own, const Domain *d, const Units *units)
   bad = bad || attribute_text(own, reasons_name, "columns", "time;cause;value;limit;x;y;z") ||
         attribute_text(own, reasons_name, "causes", text_words(&causes)) ||
         attribute_text(own, reasons_name, "criterion", criterion ? criterion->name : "") ||
-        attribute_text(own, reasons_name, "value", criterion ? criterion->quantity : "") ||
+        attribute_text(own, reasons_name, "value", criterion && criterion->quantity ? criterion->quantity : "") ||
         attribute_text(own, reasons_name, "unit", unit);
   text_free(&causes);
   return bad;
