@@ -494,7 +494,7 @@ static void bodies_of_unlike_spacing_that_meet_keep_their_momentum(void **state)
       p->velocity[1][i] = p->block[i / SLICE] ? 5 : 0;
     }
     const Motion before = motion_of(model);
-    while (breccia_model_time(model) < (under_sanitizers() ? 1.2e-3 : 2.6e-3)) step_surely(model, 10);
+    while (breccia_model_time(model) < (under_sanitizers() ? 1.8e-3 : 2.6e-3)) step_surely(model, 10);
     const Motion after = motion_of(model);
     if (!under_sanitizers()) assert_true(after.gap > 0.012);
     for (int c = 0; c < 3; ++c) {
