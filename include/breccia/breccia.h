@@ -50,7 +50,8 @@ BRECCIA_API void breccia_text_free(char *text);
 /* ---- constitutive laws ---- */
 
 /** One parameter of a law: the reader, the messages, the help and the documentation are made from this. An optional one that is
- *  called "length" is the length over which a fracture energy is spread; where a deck leaves it out it is the formulation's.
+ *  called "length" is the length over which a fracture energy is spread; a deck that leaves it out takes that of the
+ *  formulation.
  *  An optional parameter that is called "dimensions" defaults to the dimension of the body; NaN outside a body. */
 typedef struct breccia_parameter { /* a row of a table, and therefore without a size: it stays as it is */
   const char *name;                /* key in the deck, lower case words */

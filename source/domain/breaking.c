@@ -105,8 +105,8 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns the criterion's value of a bond, without the temporary raise of limits that orders the breaking of bonds; NaN
- *  for criteria that tell none. */
+/** Returns the value of a bond that the criterion compares, without the temporary raise of limits that orders the
+ *  breaking of bonds; NaN for criteria without a value. */
 static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane, double *limit)
 {
   if (!d->failure.criterion->measure) return NAN;

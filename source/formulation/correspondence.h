@@ -145,7 +145,7 @@ void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 /** Whether control keeps its stiffness where points of a material have lost theirs. */
 bool correspondence_control_lasts(const void *formulation, const Material *material);
-/** Returns true if the influence of bonds falls with their length, so that fading control can be bounded on slip lines. */
+/** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines then. */
 bool correspondence_influence_falls(const void *formulation);
 /** Energy that the control stores at a place. */
 double correspondence_held(const void *formulation, int64_t place);

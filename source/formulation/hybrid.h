@@ -240,8 +240,8 @@ typedef struct HybridRows {
 HybridRows hybrid_rows(const Hybrid *hybrid, int64_t place);
 /** @return false: there are no more */
 bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
-/** Returns false if the row that `hybrid_rows_next` found last cannot have a particle among its members, because the particle is
- *  further from the bond's other end than any neighbour. */
+/** Returns false if a particle cannot be a member of the row that `hybrid_rows_next` found last, because the particle is
+ *  further from the other end of the bond than any neighbour. */
 bool hybrid_rows_near(const Hybrid *hybrid, const HybridRows *rows, int32_t place);
 
 /* ---- between the two kinds of geometry ---- */

@@ -207,6 +207,12 @@ static void families_add_square(double a[MOST_TERMS][TERM_ROOM], const double h[
   }
 }
 
+/** Returns true if bond constants of a family are sought at the place itself, and not at the original of an image. */
+static bool families_is_own(const FamilyBalance *b, int64_t place)
+{
+  return b->wish[place] >= 0 && !body_outside(b->o->body, b->o->particles->number[place]);
+}
+
 /** Solves (A + c) x = r, both over the sum of q. */
 static void families_solve(const FamilyBalance *b, double a[MOST_TERMS][TERM_ROOM], const double r[TERM_ROOM],
                            double total, double x[TERM_ROOM])
@@ -232,7 +238,7 @@ static void families_wish(void *context, int64_t place)
   const Family *f = o->family;
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
-  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  if (!families_is_own(b, place)) return;
   double a[MOST_TERMS][TERM_ROOM] = {{0}}, r[TERM_ROOM] = {0}, room[TERM_ROOM], total = 0, least = 0;
   double *x = b->x + (int64_t)TERM_ROOM * b->wish[place];
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
@@ -335,7 +341,7 @@ static void families_find_own(void *context, int64_t place)
   const Family *f = o->family;
   const int64_t slice = place / SLICE;
   double room[TERM_ROOM], total = 0;
-  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  if (!families_is_own(b, place)) return;
   double *own = b->own + (int64_t)TERM_ROOM * b->wish[place];
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
@@ -355,7 +361,7 @@ static void families_find_given(void *context, int64_t place)
   const Family *f = o->family;
   const double *volume = o->particles->volume;
   const int64_t slice = place / SLICE;
-  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  if (!families_is_own(b, place)) return;
   double alike = b->surface[place] * volume[place], others = (1 - b->surface[place]) * volume[place];
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
@@ -392,7 +398,7 @@ static void families_find_goal(void *context, int64_t place)
   const Family *f = o->family;
   const double *volume = o->particles->volume;
   const int64_t slice = place / SLICE;
-  if (b->wish[place] < 0 || body_outside(o->body, o->particles->number[place])) return;
+  if (!families_is_own(b, place)) return;
   const double inner = 1 - b->surface[place];
   double *goal = b->goal + (int64_t)TERM_ROOM * b->wish[place], others = inner * volume[place];
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {

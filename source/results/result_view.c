@@ -76,8 +76,8 @@ void result_view_words(const ResultView *view, const char *dataset, const char *
   H5Dclose(set);
 }
 
-/** Which lattice each particle stands on: numbers in a list of names. Files of earlier versions tell none: square, as cells of cubic ones are
- *  seen too. */
+/** Reads the lattice of each particle, a number in a list of names. Files of earlier versions have none; their particles
+ *  count as square, which is also what cells of cubic lattices look like. */
 static int read_lattices(ResultView *view, Error *error)
 {
   const LatticeType *square = lattice_find("square");

@@ -161,7 +161,9 @@ static int fib_prepare(const double *v, void *constants, char *reason, size_t si
   c->strain = v[FIB_STRAIN];
   c->width = crushing / c->strength;
   c->most_lateral = c->strain / 2;
-  if (young * c->strain < fib_least_ratio * c->strength)
+  if (v[FIB_DIMENSIONS] != floor(v[FIB_DIMENSIONS]) && !isnan(v[FIB_DIMENSIONS]))
+    snprintf(reason, size, "'dimensions' is %g; give 1, 2 or 3", v[FIB_DIMENSIONS]);
+  else if (young * c->strain < fib_least_ratio * c->strength)
     snprintf(reason, size, "'peak strain' must be at least %g times strength over Young's modulus, %g", fib_least_ratio,
              fib_least_ratio * c->strength / young);
   else if (c->strength < c->tension.strength)

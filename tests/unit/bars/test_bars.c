@@ -194,7 +194,8 @@ static const char *const formulations[] = {"formulation: bond-based", "formulati
                                            "formulation: correspondence", "formulation: hybrid",
                                            "formulation: micropolar"};
 
-/** Pulls a prism of 1.2 x 0.3 x 0.3 with prescribed layers at its ends; with `bars` or without. @return force in the middle: what the right half is held by */
+/** Pulls a prism of 1.2 x 0.3 x 0.3 with prescribed layers at its ends; with `bars` or without.
+ *  @return force in the middle: what the right half is held by */
 static double pulled(const char *formulation, const char *bars, const char *solver, double strain)
 {
   /* Bonds of ordinary families of a thin prism have factors that vary up to seven horizons from its ends. Where the

@@ -189,8 +189,11 @@ static void impossible_constants_are_refused(void **state)
     int which;
     double value;
     const char *word;
-  } bad[] = {
-      {5, 0.001, "peak strain"}, {4, 2000, "compressive strength"}, {6, 0.5, "finer spacing"}, {3, NAN, "length"}};
+  } bad[] = {{5, 0.001, "peak strain"},
+             {4, 2000, "compressive strength"},
+             {6, 0.5, "finer spacing"},
+             {3, NAN, "length"},
+             {9, 2.5, "give 1, 2 or 3"}};
   char constants[1024], reason[512] = "";
   double values[10];
   assert_true(law->constants_size <= sizeof constants && law->parameter_count == 10);

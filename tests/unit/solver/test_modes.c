@@ -103,8 +103,8 @@ static void beams_between_mirrored_layers_bend_as_beams_do(void **state)
 }
 
 /** Returns the lowest frequency of two sheared layers of one thickness and density between walls:
- *  c_2 sin(w H / c_1) cos(w H / c_2) + c_1 cos(w H / c_1) sin(w H / c_2) = 0, by continuity of displacement and traction.
- */
+ *    c_2 sin(w H / c_1) cos(w H / c_2) + c_1 cos(w H / c_1) sin(w H / c_2) = 0,
+ *  by continuity of displacement and traction. */
 static double frequency_of_layers(double thickness, double density, double lower, double upper)
 {
   const double below = sqrt(lower / density), above = sqrt(upper / density), slower = fmin(below, above);

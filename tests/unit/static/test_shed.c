@@ -31,8 +31,8 @@ static void a_crack_takes_the_same_however_bonds_are_overloaded(void **state)
     /* Increments that overload bonds. */
     int few;
     /* Difference of fracture energies. The energy of an ordinary bond at its limit depends on the dilatations of its
-     * families. Of bonds that one increment overloads together these are the means over the increment; of bonds that break
-     * one by one they have fallen with the bonds beside them. */
+     * families. Of bonds that one increment overloads together these are the means over the increment; of bonds that
+     * break one by one they have fallen with the bonds beside them. */
     double close;
   } cracks[] = {{"bond-based", "critical stretch: 0.004", 0, 1, 1e-9},
                 {"bond-based", "criterion: critical bond energy, bond energy: 21", 21 * 0.002 * 0.002, 1, 1e-9},
