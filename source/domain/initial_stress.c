@@ -378,10 +378,21 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
   return BRECCIA_OK;
 }
 
+/** Laws of one strain may say that there is stress at no strain, which stores energy before anything acts. */
+static int store_by_laws(Domain *d)
+{
+  bool may = false;
+  for (int r = 0; r < d->region_count; ++r) may |= d->regions[r].points.components == 1;
+  if (!may) return BRECCIA_OK;
+  domain_evaluate(d);
+  d->initial_energy = domain_stored_energy(d);
+  return BRECCIA_OK;
+}
+
 int domain_begin_under(Domain *d, const Loading *loading, const DeckReader *reader, const SectionList *items,
                        const SectionList *selections)
 {
-  if (!items->count) return BRECCIA_OK;
+  if (!items->count) return store_by_laws(d);
   Work work = {.domain = d, .reader = reader, .items = items};
   const int status = begin(&work, loading, selections);
   for (int k = 0; k < 6; ++k) places_free(&work.stress[k]);

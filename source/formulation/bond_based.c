@@ -185,10 +185,8 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double lateral = bond_lateral(b, place, &bond);
-  const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch, lateral) : 1;
-  const double elastic = b->particles->free_strain
-                             ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
-                             : share * (length - bond.length);
+  const double elastic = b->bonds ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
+                                  : length - bond.length;
   const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }

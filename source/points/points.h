@@ -180,8 +180,6 @@ double points_softness(const Points *points, int64_t row);
 /** Elastic strain of a point of one strain: its stress over the slope at which the law unloads. It has the sign of the stress.
  *  @param from  strain at which its law carried nothing at first: 0, but for steel that begins under stress */
 double points_elastic_strain(const Points *points, int64_t row, double strain, double lateral, double from);
-/** The same over the strain, at most 1; below zero where the stress is against the strain, as after yielding. 1 without a strain. */
-double points_elastic_share(const Points *points, int64_t row, double strain, double lateral);
 
 /** True if no law dissipates or remembers: stresses are those of the strains, to the bit. */
 bool points_are_linear(const Points *points);

@@ -150,8 +150,3 @@ double points_elastic_strain(const Points *points, int64_t row, double strain, d
   if (along) return (share > 0 ? fmin(most, share) : 1) * strained;
   return share > 0 ? share * step / back : 0;
 }
-
-double points_elastic_share(const Points *points, int64_t row, double strain, double lateral)
-{
-  return strain == 0 ? 1 : fmin(1, points_elastic_strain(points, row, strain, lateral, 0) / strain);
-}

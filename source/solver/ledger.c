@@ -61,12 +61,21 @@ static bool holds_too_much(const Ledger *l)
   return !(l->kinetic <= 1.5 * l->mass * pow(beyond_all * (l->wave + l->given), 2));
 }
 
+/** The time step in words, beside the stable one where there is such a limit. */
+static void describe_step(const Clock *clock, char *words, size_t size)
+{
+  const int count = snprintf(words, size, "%.4g %s", clock->time_step, clock->time_unit);
+  if (isfinite(clock->stable))
+    snprintf(words + count, size - (size_t)count, " (stable step %.4g %s)", clock->stable, clock->time_unit);
+}
+
 static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, const Units *units, Error *error)
 {
   const Particles *p = d->particles;
   double speed, turning;
   int64_t i = fastest_place(p, 0, ROTATION, &speed);
-  char place[120], what[300], unit[32];
+  char place[120], what[300], unit[32], step[120];
+  describe_step(clock, step, sizeof step);
   units_name(units, dimension_find("velocity"), unit, sizeof unit);
   if (l->fast_steps > 0) speed = l->fastest; /* in the middle of the step */
   const bool moves = speed > most_of_speed * (l->wave + l->given) || p->motions <= ROTATION;
@@ -82,12 +91,9 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, c
       error, BRECCIA_FAILURE,
       "step %lld (time %g %s): the computation has blown up: %s, more than %g "
       "times the waves of the materials (%.4g %s) and the speeds at the start and prescribed (%.4g %s) together; the "
-      "time "
-      "step of %.4g %s (stable step %.4g %s) is too long for what happens, or bonds that break or close give more than "
-      "they "
-      "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, clock->time_unit, what, most_of_speed, l->wave, unit, l->given, unit,
-      clock->time_step, clock->time_unit, clock->stable, clock->time_unit);
+      "time step of %s is too long for what happens, or bonds that break or close give more than they got: choose a "
+      "smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
+      (long long)clock->step, clock->time, clock->time_unit, what, most_of_speed, l->wave, unit, l->given, unit, step);
 }
 
 void ledger_give_up(Ledger *l)
@@ -136,14 +142,15 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *un
     return tell_too_fast(l, d, clock, units, error);
   }
   if (l->unsound_steps < LASTING) return BRECCIA_OK;
+  char step[120];
+  describe_step(clock, step, sizeof step);
   return error_add(
       error, BRECCIA_FAILURE,
       "step %lld (time %g %s): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
-      "motions have put in %.4g at most; the time step of %.4g %s (stable step %.4g %s) is too long for what "
-      "happens, or bonds that break or close give more than they got: choose a smaller 'safety' or 'time step', more "
-      "zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, clock->time_unit, l->kinetic, internal, fracture, l->paid, clock->time_step,
-      clock->time_unit, clock->stable, clock->time_unit);
+      "motions have put in %.4g at most; the time step of %s is too long for what happens, or bonds that break or close "
+      "give more than they got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact "
+      "out",
+      (long long)clock->step, clock->time, clock->time_unit, l->kinetic, internal, fracture, l->paid, step);
 }
 
 Energy ledger_energy(const Ledger *l, Domain *d)

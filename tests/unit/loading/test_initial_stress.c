@@ -511,6 +511,27 @@ static void control_does_not_fade_under_stress_that_grows_with_depth(void **stat
 
 #define GROUND ELASTIC PLATE "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
 
+/** A rod whose law is under stress at no strain springs back once it is let go: that energy was stored at the start. */
+static void a_law_under_stress_at_no_strain_stores_energy(void **state)
+{
+  (void)state;
+  static const char *const laws[] = {"elastic-perfectly-plastic, yield stress: 100, initial strain: 5e-3",
+                                     "menegotto-pinto, yield stress: 100, initial stress: -50"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        UNITS "materials: {m: {model: %s, density: 2, Young modulus: 1e4}}\n"
+              "body: {b: {material: m, lattice: line, spacing: 0.1, area: 0.02, shape: {box: {from: [0, 0], to: [4, "
+              "0.1]}}}}\nperidynamics: {formulation: bond-based, space: 1-D, horizon: 1.5 spacings}\n"
+              "solve: {explicit: {end time: 0.2}}\n",
+        laws[k]);
+    run_all(m);
+    assert_near(m->solver.ledger.stored_at_start, 50.0 * 50 / 2e4 * 0.02 * 3.9, 2e-3 * 0.02);
+    assert_near(m->solver.ledger.stored_at_start, ledger_energy(&m->solver.ledger, &m->domain).kinetic, 0.02);
+    assert_balanced(m, 1e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void what_cannot_be_meant_is_told(void **state)
 {
   (void)state;
@@ -592,6 +613,7 @@ int main(void)
       cmocka_unit_test(clay_begins_as_after_an_elastic_stage),
       cmocka_unit_test(control_does_not_fade_where_stress_was_there_before_strain),
       cmocka_unit_test(control_does_not_fade_under_stress_that_grows_with_depth),
+      cmocka_unit_test(a_law_under_stress_at_no_strain_stores_energy),
       cmocka_unit_test(what_cannot_be_meant_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
