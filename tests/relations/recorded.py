@@ -1,0 +1,334 @@
+#!/usr/bin/env python3
+"""Recorded results: small decks in which all keys of the language meet (recorded_decks.py) give the results that
+recorded.txt holds.
+
+Relations and closed forms say what is right; this test says that a change moves no result, message or refusal that it
+does not mean to move. Whoever means to move results runs it with --record, reads the difference of recorded.txt, and
+names what moved in the commit.
+
+A figure is a sum over all entries of a field, or over the columns of a file, with a weight of its own for each entry,
+so that any entry moves it.
+
+usage: recorded.py COMMAND PRINT_RESULTS [--record] [--only NUMBER] [--jobs N] [--shown N]
+  --record        writes recorded.txt anew
+  --only NUMBER   prints this deck and its figures, and compares these
+"""
+
+import argparse
+import concurrent.futures
+import glob
+import json
+import math
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import zlib
+
+import outputs
+import recorded_decks
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+RECORD = os.path.join(HERE, "recorded.txt")
+NUMBERS = range(900)  # of decks that are tried for the record
+DECKS = 300  # that run
+DIGITS, TOLERANCE = 7, 2e-6
+
+# Keys that no deck here has, and why.
+ELSEWHERE = {
+    "material": ("opensees", "remote", "server", "processes", "stage", "stress unit", "timeout"),  # servers.sh
+    "deck": ("include", "variables", "title", "pictures"),  # pictures: picture.sh; the others change no results
+    "block": ("file",),  # bodies from files: relations and unit tests of the body
+    "selection": ("group", "outside"),
+    "file history": ("channel",),  # records of several channels: unit tests of loading
+    "results": ("every", "times", "checkpoint steps", "checkpoint seconds"),
+}
+KEYLESS = ("picture", "correspondence", "bond-based", "ordinary", "hybrid", "micropolar", "critical stretch",
+           "critical bond energy", "critical bond stress")  # fmt: skip
+
+
+class Outcome:
+    """What one deck does: status, words with '#' for numbers, and figures with their names."""
+
+    def __init__(self, status, words, figures, names):
+        self.status, self.words, self.figures, self.names = status, words, figures, names
+
+
+def deck_of(number):
+    return json.dumps(recorded_decks.Deck(number).text)
+
+
+def digest(group):
+    """Returns a weighted sum of a group's entries and the sum of their sizes, in base units."""
+    total, size, count = 0.0, 0.0, 0
+    for row in group.rows:
+        for value in row:
+            count += 1
+            if math.isfinite(value):
+                weight = 0.5 + (count * 0.6180339887498949) % 1.0
+                total += weight * value * group.factor
+                size += abs(value * group.factor)
+            else:
+                total += count * 1e-3
+    return total, size
+
+
+def fold(digests, floors):
+    """Returns one figure of several: a sum of logarithms with signs, to which large and small ones contribute alike."""
+    total = 0.0
+    for count, (value, floor) in enumerate(zip(digests, floors), 1):
+        weight = 0.5 + (count * 0.6180339887498949) % 1.0
+        total += weight * math.copysign(math.log10(1 + abs(value) / floor), value) if floor else 0.0
+    return total
+
+
+# Figures of round-off, and an estimate by an iteration.
+NOISE = re.compile(r"imbalance|/left|between|numerical|stable_time_step|iterations|products|wall")
+
+
+def figures_of(groups):
+    """Returns a figure for each field, for each file of histories, and for parts of the summary, with their names."""
+    digests = {name: digest(group) for name, group in groups.items() if not NOISE.search(name)}
+    largest, names = {}, {}
+    for name, (_, size) in digests.items():
+        key = tuple(groups[name].powers)
+        largest[key] = max(largest.get(key, 0.0), size)
+        file, _, rest = name.partition(", ")
+        part = (
+            name
+            if file == "fields"
+            else "summary, " + rest.split("/")[0] if file == "summary" and "/" in rest else file
+        )
+        names.setdefault(part, []).append(name)
+    figures = []
+    for parts in names.values():
+        floors = [1e-7 * largest[tuple(groups[name].powers)] for name in parts]
+        figures.append(fold([digests[name][0] for name in parts], floors))
+    return list(names), figures
+
+
+def run(options, folder, number):
+    os.makedirs(folder)
+    with open(os.path.join(folder, "deck.yaml"), "w") as file:
+        file.write(deck_of(number))
+    with open(os.path.join(folder, "record.csv"), "w") as file:
+        file.write(recorded_decks.RECORD)
+    command = [options.command, "run", "deck.yaml", "--threads", "1", "--output", "out"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    out = os.path.join(folder, "out")
+    text = done.stderr if done.returncode else done.stdout + done.stderr
+    groups, figures, names = {}, [], []
+    if done.returncode == 0:
+        checked = subprocess.run([options.command, "check", "deck.yaml"], cwd=folder, capture_output=True, text=True)
+        text += checked.stdout + checked.stderr
+        summary = outputs.groups_of_summary(os.path.join(out, "summary.json"))
+        groups.update({f"summary, {name}": group for name, group in summary.items()})
+        fields = outputs.groups_of_fields(options.reader, out, "fields")
+        groups.update({f"fields, {name}": group for name, group in fields.items() if name not in ("Points", "Values")})
+        for path in sorted(glob.glob(os.path.join(out, "*.csv")) + glob.glob(os.path.join(out, "profiles", "*.csv"))):
+            name = os.path.basename(path)
+            groups.update({f"{name}, {key}": g for key, g in outputs.groups_of_table(path, name).items()})
+        names, figures = figures_of(groups)
+    words, numbers = words_of(text)
+    if done.returncode == 0:
+        names.append("numbers of the words")
+        figures.append(fold(numbers, [1e-6] * len(numbers)))
+    return Outcome(done.returncode, words, figures, names)
+
+
+TIMES = re.compile(r"took [^\n]*|[^\n]*(?:memory|MB|computing)[^\n]*|[^\n]*\bns\b[^\n]*")
+
+
+def words_of(text):
+    """Returns the lines that are printed, with '#' for numbers, and the numbers; without what depends on the machine."""
+    text = TIMES.sub("", outputs.IDLE.sub("", text))
+    numbers = []
+
+    def take(match):
+        number = float(match.group(0))
+        numbers.append(number)
+        return "#"
+
+    words = re.sub(outputs.NUMBER, take, text)
+    return [line.strip() for line in words.splitlines() if line.strip()], numbers
+
+
+def shortest(number):
+    text = f"{number:.{DIGITS}g}"
+    return text.replace("e+0", "e").replace("e-0", "e-").replace("e+", "e")
+
+
+def try_deck(options, work, number):
+    folder = os.path.join(work, str(number))
+    try:
+        return run(options, folder, number)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def record(options, outcomes):
+    """Writes the record: each line of words once, then for each deck status, words, a sum of the names and figures."""
+    lines, index, seen, kept, ran, keys = [], {}, set(), [], 0, set()
+    schema = read_schema(options)
+    for number, outcome in outcomes:
+        if outcome.status not in (0, 1, 2):
+            raise SystemExit(f"deck {number} ends with status {outcome.status}")
+        if outcome.status:
+            gist = {re.sub(r"'[^']*'|#[a-z.]*|\[.*\]", "", line)[:60] for line in outcome.words}
+            if gist <= seen:
+                continue
+            seen |= gist
+        elif ran >= DECKS and schema_keys(schema, [number]) <= keys:
+            continue
+        else:
+            keys |= schema_keys(schema, [number])
+        ran += outcome.status == 0
+        kept.append((number, outcome))
+        for line in outcome.words:
+            if line not in index:
+                index[line] = len(lines)
+                lines.append(line)
+    with open(RECORD, "w") as file:
+        file.writelines(f"{line}\n" for line in lines)
+        file.write("\n")
+        for number, outcome in kept:
+            words = ",".join(str(index[line]) for line in outcome.words)
+            names = zlib.crc32("\n".join(outcome.names).encode())
+            figures = " ".join(shortest(figure) for figure in outcome.figures)
+            file.write(f"{number} {outcome.status} {words} {names} {figures}".strip() + "\n")
+    print(f"{ran} decks that run and {len(kept) - ran} that do not are recorded")
+
+
+def recorded():
+    with open(RECORD) as file:
+        lines, _, decks = file.read().partition("\n\n")
+    lines, found = lines.splitlines(), {}
+    for deck in decks.splitlines():
+        number, status, words, names, *figures = deck.split(" ")
+        said = [lines[int(n)] for n in words.split(",") if n]
+        found[int(number)] = (int(status), said, int(names), [float(figure) for figure in figures])
+    return found
+
+
+def compare(number, outcome, expected):
+    """Returns messages about what is not as recorded."""
+    status, words, names, figures = expected
+    if outcome.status != status:
+        return [f"deck {number}: status {outcome.status}, recorded {status}: {' / '.join(outcome.words)[:300]}"]
+    messages = []
+    if outcome.words != words:
+        new = [line for line in outcome.words if line not in words] or outcome.words
+        old = [line for line in words if line not in outcome.words] or words
+        messages.append(f"deck {number}: words '{new[0]}', recorded '{old[0]}'")
+    elif zlib.crc32("\n".join(outcome.names).encode()) != names or len(figures) != len(outcome.figures):
+        messages.append(f"deck {number}: results have other names than those recorded")
+    else:
+        for name, a, b in zip(outcome.names, outcome.figures, figures):
+            if abs(a - b) > TOLERANCE * (1 + abs(b)):
+                messages.append(f"deck {number}: {name}: {a:.9g}, recorded {b:.9g}")
+    return messages
+
+
+# ---- whether all keys are there
+
+
+def keys_of(schema, definition, value, found):
+    """Gathers pairs of definition and key of a part of a deck."""
+    if "$ref" in definition:
+        name = definition["$ref"].split("/")[-1]
+        return keys_of(schema, schema["$defs"][name], value, found) if isinstance(value, (dict, list)) else None
+    names = [name for name, known in schema["$defs"].items() if known is definition]
+    for part in definition.get("anyOf", []) + [
+        o for o in definition.get("oneOf", []) if "$ref" in o or "properties" not in o
+    ]:
+        keys_of(schema, part, value, found)
+    if isinstance(value, list):
+        for item in value:
+            keys_of(schema, definition.get("items", {}), item, found)
+    if not isinstance(value, dict):
+        return None
+    properties = dict(definition.get("properties", {}))
+    for one in definition.get("oneOf", []):
+        if one.get("properties", {}).get("model", {}).get("const", value.get("model")) == value.get("model"):
+            properties.update(one.get("properties", {}))
+    for key, item in value.items():
+        if key in properties:
+            found.update((name, key) for name in names)
+            keys_of(schema, properties[key], item, found)
+        elif isinstance(definition.get("additionalProperties"), dict):
+            keys_of(schema, definition["additionalProperties"], item, found)
+    return None
+
+
+def read_schema(options):
+    return json.loads(subprocess.run([options.command, "schema"], capture_output=True, text=True, check=True).stdout)
+
+
+def schema_keys(schema, numbers):
+    """Returns pairs of definition and key that these decks have."""
+    found = set()
+    for number in numbers:
+        keys_of(schema, schema["$defs"]["deck"], json.loads(deck_of(number)), found)
+    return found
+
+
+def missing_keys(options, numbers):
+    """Returns keys of the language that no recorded deck has."""
+    schema = read_schema(options)
+    found, wanted = schema_keys(schema, numbers), set()
+    for name, definition in schema["$defs"].items():
+        parts = [definition] + definition.get("oneOf", [])
+        wanted |= {(name, key) for part in parts for key in part.get("properties", {}) if key != "include"}
+    return sorted(
+        (name, key) for name, key in wanted - found if name not in KEYLESS and key not in ELSEWHERE.get(name, ())
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command")
+    parser.add_argument("reader")
+    parser.add_argument("--record", action="store_true")
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--shown", type=int, default=30)
+    options = parser.parse_args()
+    options.command, options.reader = os.path.abspath(options.command), os.path.abspath(options.reader)
+    expected = {} if options.record else recorded()
+    numbers = list(NUMBERS) if options.record else list(expected)
+    if options.only is not None:
+        numbers = [options.only]
+        print(json.dumps(recorded_decks.Deck(options.only).text, indent=1))
+    work = tempfile.mkdtemp(prefix="recorded")
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        outcomes = list(zip(numbers, pool.map(lambda number: try_deck(options, work, number), numbers)))
+    shutil.rmtree(work, ignore_errors=True)
+    if options.record:
+        record(options, outcomes)
+        return 0
+    if options.only is not None:
+        for name, figure in zip(outcomes[0][1].names, outcomes[0][1].figures):
+            print(f"{name}: {figure:.9g}")
+    messages = []
+    for number, outcome in outcomes:
+        found = compare(number, outcome, expected[number])
+        messages += found[:3] + ([f"deck {number}: {len(found) - 3} further differences"] if len(found) > 3 else [])
+    if options.only is None:
+        ran = [number for number in numbers if expected[number][0] == 0]
+        messages += [f"no recorded deck that runs has '{key}' of '{name}'" for name, key in missing_keys(options, ran)]
+    for message in messages[: options.shown]:
+        print("FAIL:", message)
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{len(numbers)} decks, {len(messages)} differences; {used.ru_utime + used.ru_stime:.1f} s of processor time")
+    if messages:
+        print(
+            "Where results are meant to move: recorded.py COMMAND PRINT_RESULTS --record, and name what moved in the commit."
+        )
+    return 1 if messages else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
