@@ -193,7 +193,7 @@ static double search_seconds(const Domain *d)
 {
   Family family;
   use_threads(1);
-  FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->regions[0].type->row_sums};
+  FamilySpec spec = {d->family.horizon, influence_at(INFLUENCE_CONSTANT), VOLUME_WHOLE, d->regions[0].type->row_sums};
   double start = busy_seconds();
   family_create(&family, &d->body, &spec, NULL);
   double seconds = busy_seconds() - start;

@@ -43,7 +43,7 @@ static const BenchBody bodies[] = {
     {"scattered 40³", "3-D", "file: scattered.csv", false},
 };
 
-static const char *const ways[] = {"conjugate gradients", "direct"};
+static const int ways[] = {LINEAR_gradients, LINEAR_direct};
 
 static breccia_model *load(const char *folder, const BenchBody *body, const Case *c)
 {
@@ -110,7 +110,7 @@ static double processor_seconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static int measure(breccia_model *model, const char *formulation, const char *body, const char *way, int threads)
+static int measure(breccia_model *model, const char *formulation, const char *body, int way, int threads)
 {
   Domain *d = &model->domain;
   const Particles *p = d->particles;
@@ -134,9 +134,9 @@ static int measure(breccia_model *model, const char *formulation, const char *bo
   domain_linear_step(d, v.moved, v.force);
   const double own = processor_seconds() - begun;
   printf("| %s | %s | %lld | %d | %s | %lld | %.1e | %.3f | %.3f | %.3f | %.0f | %.2f | %.0f | %.0f |\n", formulation,
-         body, (long long)unknowns_count(&solver.unknowns, NULL), threads, way, (long long)record.iterations,
-         record.residual, prepared - start, solved - prepared, work, work / own, 1e9 * own / (double)d->family.bonds,
-         (most - before) / 1e6, (most - before) / (double)p->count);
+         body, (long long)unknowns_count(&solver.unknowns, NULL), threads, linear_word(way),
+         (long long)record.iterations, record.residual, prepared - start, solved - prepared, work, work / own,
+         1e9 * own / (double)d->family.bonds, (most - before) / 1e6, (most - before) / (double)p->count);
   fflush(stdout);
   linear_solver_destroy(&solver);
   drop(&v);
@@ -144,7 +144,7 @@ static int measure(breccia_model *model, const char *formulation, const char *bo
 }
 
 /** In a process of its own, so that memory that others gave back is not counted. */
-static int measure_apart(const char *folder, const BenchBody *body, const Case *c, const char *way, int threads)
+static int measure_apart(const char *folder, const BenchBody *body, const Case *c, int way, int threads)
 {
   fflush(stdout);
   const pid_t child = fork();
@@ -172,7 +172,7 @@ int main(int count, char **words)
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b)
       for (int way = 0; way < 1 + bodies[b].factored; ++way) {
         char name[100];
-        snprintf(name, sizeof name, "%s, %s, %s", cases[c].formulation, bodies[b].name, ways[way]);
+        snprintf(name, sizeof name, "%s, %s, %s", cases[c].formulation, bodies[b].name, linear_word(ways[way]));
         if (!strstr(name, only)) continue;
         for (int threads = count > 2 ? atoi(words[2]) : 1; threads <= all_threads(); ++threads)
           failed |= measure_apart(folder, &bodies[b], &cases[c], ways[way], threads);

@@ -7,11 +7,7 @@
 
 enum { MOST = 10000 }; /* lines of one bar: a slab of a kilometre at 100 mm; more is a mistake of a unit */
 
-static const char *last_gap(int k)
-{
-  static const char *const words[] = {"short", "even", "open", NULL};
-  return words[k];
-}
+enum { GAP_SHORT, GAP_EVEN, GAP_OPEN };
 
 static const Field repeat_fields[] = {
     {.key = "along",
@@ -44,7 +40,7 @@ static const Field repeat_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(RepeatSpec, last_gap),
      .standard = "short",
-     .choice = last_gap,
+     .words = (const char *const[]){[GAP_SHORT] = "short", [GAP_EVEN] = "even", [GAP_OPEN] = "open", NULL},
      .meaning = "where 'over' is no multiple of the pitch: 'short': a line at its end, with less than the pitch before "
                 "it; 'even': all gaps alike, as many as make none longer than the pitch; 'open': no line beyond the "
                 "last whole pitch"},
@@ -60,7 +56,7 @@ static double gaps(const RepeatSpec *r)
 /** Of a length, however many. */
 static double lines(const RepeatSpec *r)
 {
-  return 1 + (strcmp(r->last_gap, "open") == 0 ? floor(gaps(r)) : ceil(gaps(r)));
+  return 1 + (r->last_gap == GAP_OPEN ? floor(gaps(r)) : ceil(gaps(r)));
 }
 
 static void check_repeat(const DeckReader *reader, void *section)
@@ -75,7 +71,7 @@ static void check_repeat(const DeckReader *reader, void *section)
                  "last gap: says how lines fill a length; with 'number' leave it out");
     return;
   }
-  if (gaps(r) < 1 && strcmp(r->last_gap, "open") == 0)
+  if (gaps(r) < 1 && r->last_gap == GAP_OPEN)
     node_error(reader->document, section_node(r, "over"), reader->error,
                "over: shorter than one pitch, so that there is only the first line; leave 'repeat' out");
   if (lines(r) > MOST)
@@ -99,8 +95,8 @@ int64_t repeat_lines(const RepeatSpec *r)
 double repeat_offset(const RepeatSpec *r, int64_t line)
 {
   const int64_t last = repeat_lines(r) - 1;
-  if (isnan(r->over) || strcmp(r->last_gap, "open") == 0) return r->pitch * (double)line;
-  if (strcmp(r->last_gap, "even") == 0) return r->over * (double)line / (double)last;
+  if (isnan(r->over) || r->last_gap == GAP_OPEN) return r->pitch * (double)line;
+  if (r->last_gap == GAP_EVEN) return r->over * (double)line / (double)last;
   return line == last ? r->over : r->pitch * (double)line;
 }
 

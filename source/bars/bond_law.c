@@ -7,12 +7,12 @@
 
 static bool is_linear(const BondSpec *bond)
 {
-  return !strcmp(bond->law, "linear");
+  return bond->law == BOND_LINEAR;
 }
 
 static bool splits_unconfined(const BondSpec *bond)
 {
-  return !isnan(bond->splitting) && !strcmp(bond->confinement, "none");
+  return !isnan(bond->splitting) && bond->confinement == CONFINED_BY_NOTHING;
 }
 
 static void check_bond(const DeckReader *reader, void *section)
@@ -36,7 +36,7 @@ static void check_bond(const DeckReader *reader, void *section)
                  "stiffness: law 'linear' needs it, the stress on the surface of the bar per slip, like 100 MPa/mm");
     return;
   }
-  if (isnan(bond->splitting) && !strcmp(bond->confinement, "stirrups"))
+  if (isnan(bond->splitting) && bond->confinement == CONFINED_BY_STIRRUPS)
     node_error(reader->document, section_node(section, "confinement"), reader->error,
                "confinement: counts where concrete splits; give 'splitting stress', or leave this out");
   if (isnan(bond->strength))
@@ -54,7 +54,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, law),
      .standard = "fib",
-     .words = (const char *const[]){"fib", "linear", NULL},
+     .words = (const char *const[]){[BOND_OF_FIB] = "fib", [BOND_LINEAR] = "linear", NULL},
      .meaning = "'fib': that of fib Model Code 2010, table 6.1-1; 'linear': stress in proportion to slip, without end"},
     {.key = "stiffness",
      .kind = FIELD_NUMBER,
@@ -67,7 +67,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, condition),
      .standard = "good",
-     .words = (const char *const[]){"good", "other", NULL},
+     .words = (const char *const[]){[CONDITION_GOOD] = "good", [CONDITION_OTHER] = "other", NULL},
      .meaning =
          "of 'fib': good bond (tau_max = 2.5 sqrt(f_cm / MPa) MPa, s1 = 1 mm, s2 = 2 mm), or all other conditions "
          "(1.25 sqrt(f_cm / MPa) MPa, 1.8 mm, 3.6 mm)"},
@@ -100,7 +100,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, confinement),
      .standard = "none",
-     .words = (const char *const[]){"none", "stirrups", NULL},
+     .words = (const char *const[]){[CONFINED_BY_NOTHING] = "none", [CONFINED_BY_STIRRUPS] = "stirrups", NULL},
      .meaning = "of 'fib' where concrete splits: with stirrups 0.4 of the stress is left as friction, else nothing"},
     {.key = "unloading stiffness",
      .kind = FIELD_NUMBER,
@@ -128,7 +128,7 @@ static double of_si(double value, const Units *units, const char *dimension)
 BondLaw bond_law(const BondSpec *spec, const Units *units)
 {
   if (is_linear(spec)) return (BondLaw){.linear = true, .stiffness = spec->stiffness};
-  const bool good = !strcmp(spec->condition, "good");
+  const bool good = spec->condition == CONDITION_GOOD;
   const double megapascal = of_si(1e6, units, "stress"), millimetre = of_si(1e-3, units, "length");
   BondLaw law = {.stiffness = spec->unloading,
                  .exponent = 0.4,

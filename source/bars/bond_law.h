@@ -5,9 +5,13 @@
 
 #include "deck/section.h"
 
+typedef enum BarBond { BOND_OF_FIB, BOND_LINEAR } BarBond;
+typedef enum BarCondition { CONDITION_GOOD, CONDITION_OTHER } BarCondition;
+typedef enum BarConfinement { CONFINED_BY_NOTHING, CONFINED_BY_STIRRUPS } BarConfinement;
+
 typedef struct BondSpec {
   SectionHead head;
-  const char *law, *condition, *confinement;
+  int law, condition, confinement; /* BarBond, BarCondition, BarConfinement */
   double stiffness, strength, rib_spacing, splitting, unloading;
 } BondSpec;
 

@@ -5,7 +5,7 @@
 static void check_block(const DeckReader *reader, void *section)
 {
   const BlockSpec *block = section;
-  const int dimensions = lattice_find(block->lattice)->dimensions;
+  const int dimensions = lattice_at(block->lattice)->dimensions;
   const bool plane = dimensions == 2, line = dimensions == 1;
   if (line && isnan(block->area))
     node_error(reader->document, block->head.node, reader->error,
@@ -16,7 +16,7 @@ static void check_block(const DeckReader *reader, void *section)
   if (plane && isnan(block->thickness))
     node_error(reader->document, block->head.node, reader->error,
                "block: a %s lattice needs the 'thickness' of the plate (a plane body is 1 thick per unit depth)",
-               block->lattice);
+               lattice_word(block->lattice));
   if (!plane && !isnan(block->thickness))
     node_error(
         reader->document, section_node(section, "thickness"), reader->error,
@@ -145,7 +145,7 @@ int block_place_lattice(const BlockSpec *block, int b, const MarginList *margins
                         Lattice *lattice)
 {
   double low[3], high[3];
-  lattice_measure(lattice, lattice_find(block->lattice), block->spacing);
+  lattice_measure(lattice, lattice_at(block->lattice), block->spacing);
   if (block->file) return BRECCIA_OK;
   shape_bounds(block->shape, &lattice->unit, low, high);
   const Box *box = leading_box(block->shape);

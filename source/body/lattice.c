@@ -16,6 +16,11 @@ const char *lattice_word(int k)
   return k < (int)(sizeof types / sizeof *types) ? types[k].name : NULL;
 }
 
+const LatticeType *lattice_at(int k)
+{
+  return &types[k];
+}
+
 const LatticeType *lattice_find(const char *name)
 {
   for (size_t k = 0; k < sizeof types / sizeof *types; ++k)

@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *const faces[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
+
 static void check_selection(const DeckReader *reader, void *section)
 {
   const SelectionSpec *s = section;
-  if (!s->block && !s->group && !s->face && !s->inside && isnan(s->nearest[0]) && !s->all && !s->outside &&
+  if (!s->block && !s->group && s->face < 0 && !s->inside && isnan(s->nearest[0]) && !s->all && !s->outside &&
       !s->any_of.count && !s->all_of.count && !s->except.count)
     node_error(reader->document, s->head.node, reader->error,
                "selection: say what is selected: block, group, face, inside, nearest, any of, all of, except or 'all: "
@@ -32,7 +34,7 @@ static const Field selection_fields[] = {
      .offset = offsetof(SelectionSpec, face),
      .standard = "",
      .meaning = "particles next to the outermost ones in this direction, of the block and the group if these are given",
-     .words = (const char *const[]){"x-", "x+", "y-", "y+", "z-", "z+", NULL}},
+     .words = faces},
     {.key = "layers",
      .kind = FIELD_COUNT,
      .offset = offsetof(SelectionSpec, layers),
@@ -179,8 +181,8 @@ static double face_depth(const Lattice *lattice, int axis, int64_t layers)
 static void keep_face(const Resolving *r, uint8_t *held)
 {
   const Particles *p = &r->body->particles;
-  const int axis = r->spec->face[0] - 'x';
-  const double sign = r->spec->face[1] == '-' ? -1 : 1;
+  const int axis = selection_axis(r->spec);
+  const double sign = selection_side(r->spec);
   double outermost = -INFINITY;
   for (int64_t n = 0; n < p->count; ++n)
     if (held[n]) outermost = fmax(outermost, sign * p->position[axis][p->place_of[n]]);
@@ -234,9 +236,9 @@ static int find_spec(const Resolving *r, uint8_t *held)
   const Particles *p = &r->body->particles;
   const int block = spec->block ? block_index(r->body, spec->block) : -1;
   if (spec->block && block < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
-  if (spec->face && spec->face[0] - 'x' >= r->body->dimensions)
+  if (spec->face >= 0 && selection_axis(spec) >= r->body->dimensions)
     return node_error(r->reader->document, section_node(spec, "face"), r->reader->error,
-                      "face: the body has no face %s; it %s", spec->face,
+                      "face: the body has no face %s; it %s", faces[spec->face],
                       r->body->dimensions == 2 ? "is plane: x-, x+, y- or y+" : "is a bar along x: x- or x+");
   for (int64_t n = 0; n < p->count; ++n)
     held[n] = (block < 0 || p->block[p->place_of[n] / SLICE] == block) && body_outside(r->body, n) == spec->outside;
@@ -246,7 +248,7 @@ static int find_spec(const Resolving *r, uint8_t *held)
     status = keep_listed(r, &(ReferenceList){&group, 1}, JOIN_ANY, "group", held);
   }
   if (status) return status;
-  if (spec->face) keep_face(r, held);
+  if (spec->face >= 0) keep_face(r, held);
   if (spec->inside || !isnan(spec->nearest[0])) keep_near(r, held);
   if (!count_held(r->body, held)) return say_empty(r, NULL, 0);
   if (spec->any_of.count) status = keep_listed(r, &spec->any_of, JOIN_ANY, "any of", held);

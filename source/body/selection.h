@@ -7,7 +7,8 @@
 
 typedef struct SelectionSpec {
   SectionHead head;
-  const char *block, *group, *face;
+  const char *block, *group;
+  int face; /* 2 * axis, + 1 where it faces upwards; -1: none */
   int64_t layers;
   Shape *inside;
   double nearest[3];
@@ -16,6 +17,16 @@ typedef struct SelectionSpec {
 } SelectionSpec;
 
 extern const Section selection_section;
+
+/** Axis of the face, from 0; and 1 where it looks upwards along the axis, else -1. Only where a face is given. */
+static inline int selection_axis(const SelectionSpec *spec)
+{
+  return spec->face / 2;
+}
+static inline int selection_side(const SelectionSpec *spec)
+{
+  return spec->face % 2 ? 1 : -1;
+}
 
 /** What a reference says: the named selection, or the one given on the spot; NULL where the name is that of a group. */
 const SelectionSpec *selection_spec(const SectionList *named, const Reference *reference);

@@ -182,8 +182,7 @@ static void drive(Stage *stage, int kind, double confining)
 
 static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *spec, bool uniaxial)
 {
-  int kind = 0;
-  while (strcmp(kinds[kind], spec->kind)) ++kind;
+  const int kind = spec->kind;
   if (uniaxial && kind != UNIAXIAL)
     return node_error(reader->document, section_node(spec, "kind"), reader->error,
                       "kind: a law of one strain knows the test 'uniaxial' only");
@@ -200,7 +199,7 @@ static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *s
       stage->by_stress[k] = true;
       stage->target[k] = -spec->confining;
     }
-    if (strcmp(spec->zero, zeros[BEFORE_CONSOLIDATION])) t->consolidation = t->count;
+    if (spec->zero != BEFORE_CONSOLIDATION) t->consolidation = t->count;
   }
   t->turns = spec->cycles ? 2 * (int)spec->cycles - 1 : 0;
   const double back = isnan(spec->back) ? -spec->strain : spec->back;

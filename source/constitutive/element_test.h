@@ -14,7 +14,7 @@ typedef struct StageSpec {
 
 typedef struct TestSpec {
   SectionHead head;
-  const char *kind, *zero;
+  int kind, zero;                           /* numbers of test_kind_word and test_zero_word */
   double strain, back, confining, duration; /* duration: NaN: at once */
   int64_t cycles, steps;
 } TestSpec;

@@ -311,7 +311,7 @@ void field_read(const DeckReader *reader, const Node *node, const char *label, c
   case FIELD_CHOICE:
     for (int k = 0; node->kind == NODE_SCALAR && field_word(field, k); ++k)
       if (!strcmp(field_word(field, k), node->text)) {
-        *(const char **)target = field_word(field, k);
+        *(int *)target = k;
         return;
       }
     say_choices(reader, node, label, field);
@@ -389,6 +389,7 @@ void field_set_absent(const Field *field, void *target)
   case FIELD_LENGTH: ((Length *)target)->value = NAN; break;
   case FIELD_NUMBER_OR_SECTION: ((NumberOrSection *)target)->value = NAN; break;
   case FIELD_COUNT: *counts = -1; break;
+  case FIELD_CHOICE: *(int *)target = -1; break;
   case FIELD_POINT:
   case FIELD_FREE_POINT: numbers[0] = numbers[1] = numbers[2] = NAN; break;
   case FIELD_COUNTS: counts[0] = counts[1] = counts[2] = -1; break;

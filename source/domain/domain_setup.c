@@ -22,7 +22,7 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
                     : d->body.dimensions == 2
                         ? "space: a lattice of the plane needs 'plane strain' or 'plane stress'"
                         : "space: '%s' needs a square or hexagonal lattice; this body's is one of space",
-                    spec->peridynamics->space);
+                    space_word(spec->peridynamics->space));
 }
 
 /** True if the row of a slice goes on in the slice after it. */
@@ -312,7 +312,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
   const PeridynamicsSpec *pd = spec->peridynamics;
-  const Influence *influence = influence_find(pd->influence);
+  const Influence *influence = influence_at(pd->influence);
   const Space space = peridynamics_space(pd);
   d->failed_place = -1;
   d->forces_spec = spec->forces;
@@ -347,9 +347,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     return node_error(reader->document, section_node(pd, "horizon"), error,
                       "horizon: %g reaches over %.3g spacings of %g; 3 to 4 are usual", horizon, reach,
                       d->body.largest_spacing);
-  int correction = 0;
-  while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  FamilySpec family = {horizon, influence, (VolumeCorrection)correction, false};
+  FamilySpec family = {horizon, influence, (VolumeCorrection)pd->volume_correction, false};
   for (int r = 0; r < d->region_count; ++r) family.row_sums |= d->regions[r].type->row_sums;
   Error *told = breccia_error_create();
   status = family_create(&d->family, &d->body, &family, told);
@@ -357,7 +355,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   CHECK(family_is_valid(&d->family));
   if (d->family_volume) team_each(d->particles->places, weigh_family, d);
 
-  const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
+  const bool may_give_up = spec->failure && spec->failure->failed_laws == FAILED_LAWS_BREAK;
   if (may_give_up && d->region_count > 1)
     return node_error(reader->document, section_node(spec->failure, "failed laws"), error,
                       "failed laws: 'break' needs a body of one formulation; leave 'regions' out, or let the run stop");

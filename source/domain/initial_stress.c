@@ -111,7 +111,7 @@ static void find_gravity(Work *w, const Loading *loading)
 static int mark(Work *w, int n, const SectionList *selections)
 {
   static const Node everywhere = {.kind = NODE_MAP};
-  SelectionSpec all = {.head = {NULL, &everywhere}, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
+  SelectionSpec all = {.head = {NULL, &everywhere}, .face = -1, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
   const InitialStressSpec *spec = w->items->items[n];
   const Body *body = &w->domain->body;
   Reference on = spec->on;

@@ -39,10 +39,10 @@ static int name_blocks(const Domain *d, const DeckReader *reader, const Peridyna
 
 static Region region_of_spec(const PeridynamicsSpec *spec, int r)
 {
-  if (!r) return (Region){.type = formulation_find(spec->formulation), .keys = spec->keys, .node = spec->head.node};
+  if (!r) return (Region){.type = formulation_at(spec->formulation), .keys = spec->keys, .node = spec->head.node};
   const RegionSpec *region = spec->regions.items[r - 1];
   return (Region){.name = region->head.name,
-                  .type = formulation_find(region->formulation),
+                  .type = formulation_at(region->formulation),
                   .keys = region->keys,
                   .node = region->head.node};
 }

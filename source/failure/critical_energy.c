@@ -54,9 +54,9 @@ double bonds_across(Space space, double horizon, double cut)
 
 /** Returns the number of bonds across a unit area, each by its volumes: on the lattice of a material, or by the
  *  integrals of a continuum. */
-static double critical_energy_bonds(const LimitsOf *of, int material, const char *calibration)
+static double critical_energy_bonds(const LimitsOf *of, int material, int calibration)
 {
-  const double bonds = strcmp(calibration, "lattice") ? NAN : crack_mean(of, material, crack_bonds_across);
+  const double bonds = calibration != CALIBRATED_ON_LATTICE ? NAN : crack_mean(of, material, crack_bonds_across);
   return isnan(bonds) ? bonds_across(of->lengths->space, of->lengths->horizon, of->section) : bonds;
 }
 
@@ -226,7 +226,9 @@ static void describe(const FailureSpec *failure, const LimitsOf *of, int materia
   LimitsOf bonds = *of;
   if (!of->type->critical_stretch) bonds.type = formulation_find("bond-based"); /* by its continuum */
   text_add(text, " (a fracture energy of %.4g %s, as of bonds that break at a stretch of %.3g)", energy, unit,
-           critical_stretch_of(&bonds, material, energy, of->type->critical_stretch ? spec->calibration : "continuum"));
+           critical_stretch_of(&bonds, material, energy,
+                               of->type->critical_stretch ? (FailureCalibration)spec->calibration
+                                                          : CALIBRATED_ON_CONTINUUM));
 }
 
 static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])

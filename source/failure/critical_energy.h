@@ -7,7 +7,7 @@
 typedef struct CriticalEnergySpec {
   SectionHead head;
   double energy, fracture_energy; /* NaN: not given */
-  const char *calibration;        /* "lattice" or "continuum" */
+  int calibration;                /* FailureCalibration */
 } CriticalEnergySpec;
 
 /** The keys, where a deck has this criterion; else NULL. */

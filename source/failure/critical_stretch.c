@@ -38,11 +38,10 @@ const CriticalStretchSpec *critical_stretch_spec(const FailureSpec *failure)
   return failure && criterion_of(failure)->section == &section ? failure->keys : NULL;
 }
 
-double critical_stretch_of(const LimitsOf *of, int material, double energy, const char *calibration)
+double critical_stretch_of(const LimitsOf *of, int material, double energy, FailureCalibration calibration)
 {
   const Material *m = &of->materials[material];
-  const double length =
-      !calibration || !strcmp(calibration, "lattice") ? crack_mean(of, material, crack_length_across) : NAN;
+  const double length = calibration == CALIBRATED_ON_LATTICE ? crack_mean(of, material, crack_length_across) : NAN;
   return isnan(length) ? of->type->critical_stretch(of->lengths, m, energy)
                        : sqrt(2 * energy / (material_young(m) * length));
 }
@@ -73,10 +72,10 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
     const Material *m = &of->materials[k];
     double stretch = spec ? spec->stretch : NAN, strain = material_failure_strain(m);
     if (spec && !isnan(spec->fracture_energy))
-      stretch = critical_stretch_of(of, k, spec->fracture_energy, spec->calibration);
+      stretch = critical_stretch_of(of, k, spec->fracture_energy, (FailureCalibration)spec->calibration);
     else if (of->type->critical_stretch && !isnan(critical_stretch_energy(spec, of, m)) &&
-             (!spec || !strcmp(spec->calibration, "lattice")))
-      strain = critical_stretch_of(of, k, m->fracture_energy, NULL);
+             (!spec || spec->calibration == CALIBRATED_ON_LATTICE))
+      strain = critical_stretch_of(of, k, m->fracture_energy, CALIBRATED_ON_LATTICE);
     limit[k] = fmin(strain, stretch); /* of a number and NaN: the number */
   }
   return BRECCIA_OK;

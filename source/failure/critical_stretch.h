@@ -7,7 +7,7 @@
 typedef struct CriticalStretchSpec {
   SectionHead head;
   double stretch, fracture_energy; /* NaN: not given */
-  const char *calibration;         /* "lattice" or "continuum" */
+  int calibration;                 /* FailureCalibration */
 } CriticalStretchSpec;
 
 /** The keys, where a deck has this criterion; else NULL. */
@@ -15,8 +15,7 @@ const CriticalStretchSpec *critical_stretch_spec(const FailureSpec *failure);
 
 /** Returns the critical stretch of a material with which cracks take a fracture energy: in the mean over all planes of
  *  its lattice, or by the integrals of a continuum, as for particles that stand in no lattice.
- *  @param[in] material  index of the material in of->materials
- *  @param[in] calibration  that of the deck; NULL: by the lattice */
-double critical_stretch_of(const LimitsOf *of, int material, double energy, const char *calibration);
+ *  @param[in] material  index of the material in of->materials */
+double critical_stretch_of(const LimitsOf *of, int material, double energy, FailureCalibration calibration);
 
 #endif

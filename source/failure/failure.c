@@ -20,9 +20,7 @@ const Criterion *criterion_at(int k)
 
 const Criterion *criterion_of(const FailureSpec *spec)
 {
-  for (int k = 0; spec && k < COUNT; ++k)
-    if (!strcmp(criteria[k]->name, spec->criterion)) return criteria[k];
-  return criteria[0];
+  return criteria[spec ? spec->criterion : 0];
 }
 
 bool failure_is_longer(const Family *f, int64_t place, const Bond *bond)
@@ -88,14 +86,14 @@ static const Field failure_fields[] = {
      .standard = "stop",
      .meaning =
          "what happens to a particle whose law cannot be integrated: the run stops there, or all its bonds break",
-     .words = (const char *const[]){"stop", "break", NULL}},
+     .words = (const char *const[]){[FAILED_LAWS_STOP] = "stop", [FAILED_LAWS_BREAK] = "break", NULL}},
     {.key = "near grips",
      .kind = FIELD_CHOICE,
      .offset = offsetof(FailureSpec, near_grips),
      .standard = "",
      .meaning = "bonds between particles that are moved by a load or stand within a horizon of such: they break as "
                 "everywhere, or hold whatever their stretch; when absent they break, and `breccia check` warns",
-     .words = (const char *const[]){"break", "hold", NULL}},
+     .words = (const char *const[]){[NEAR_GRIPS_BREAK] = "break", [NEAR_GRIPS_HOLD] = "hold", NULL}},
     {.key = "no failure within",
      .kind = FIELD_ONE_OR_SECTIONS,
      .offset = offsetof(FailureSpec, nowhere),

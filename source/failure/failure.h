@@ -8,11 +8,11 @@
 
 typedef struct FailureSpec {
   SectionHead head;
-  const char *criterion;
-  void *keys;              /* the struct of the criterion's own section */
-  const char *failed_laws; /* "stop" or "break" */
-  const char *near_grips;  /* "break" or "hold"; NULL: not said, they break */
-  SectionList nowhere;     /* of NoFailureSpec: where no bond breaks */
+  int criterion;       /* its number (criterion_at) */
+  void *keys;          /* the struct of the criterion's own section */
+  int failed_laws;     /* FailedLaws */
+  int near_grips;      /* NearGrips; -1: not said, bonds break */
+  SectionList nowhere; /* of NoFailureSpec: where no bond breaks */
 } FailureSpec;
 
 typedef struct NoFailureSpec {
@@ -23,11 +23,18 @@ typedef struct NoFailureSpec {
 
 extern const Section failure_section;
 
+/** What happens where a law cannot be integrated. */
+typedef enum FailedLaws { FAILED_LAWS_STOP, FAILED_LAWS_BREAK } FailedLaws;
+/** What bonds near moved particles do beyond their limit. */
+typedef enum NearGrips { NEAR_GRIPS_BREAK, NEAR_GRIPS_HOLD } NearGrips;
+/** How criteria find their limit from a fracture energy. */
+typedef enum FailureCalibration { CALIBRATED_ON_LATTICE, CALIBRATED_ON_CONTINUUM } FailureCalibration;
+
 /* How criteria find their limit from a fracture energy: a key of each of them. */
 #define FAILURE_CALIBRATIONS                                                                                           \
   (const char *const[])                                                                                                \
   {                                                                                                                    \
-    "lattice", "continuum", NULL                                                                                       \
+    [CALIBRATED_ON_LATTICE] = "lattice", [CALIBRATED_ON_CONTINUUM] = "continuum", NULL                                 \
   }
 #define FAILURE_CALIBRATION_MEANING                                                                                    \
   "how a fracture energy gives the limit: in the mean over all plane cracks through the lattice at hand, or by the "   \

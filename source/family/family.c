@@ -10,7 +10,8 @@
 
 const char *volume_correction_word(int k)
 {
-  static const char *const words[] = {"none", "partial", "partial-beyond", NULL};
+  static const char *const words[] = {
+      [VOLUME_WHOLE] = "none", [VOLUME_PARTIAL] = "partial", [VOLUME_PARTIAL_BEYOND] = "partial-beyond", NULL};
   return words[k];
 }
 

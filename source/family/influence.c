@@ -40,16 +40,19 @@ static double cubic_spline(double q, double length)
 }
 
 static const Influence influences[] = {
-    {"constant", constant}, {"conical", conical}, {"inverse", inverse},           {"inverse-square", inverse_square},
-    {"gaussian", gaussian}, {"quartic", quartic}, {"cubic-spline", cubic_spline},
+    [INFLUENCE_CONSTANT] = {"constant", constant},
+    [INFLUENCE_CONICAL] = {"conical", conical},
+    [INFLUENCE_INVERSE] = {"inverse", inverse},
+    [INFLUENCE_INVERSE_SQUARE] = {"inverse-square", inverse_square},
+    [INFLUENCE_GAUSSIAN] = {"gaussian", gaussian},
+    [INFLUENCE_QUARTIC] = {"quartic", quartic},
+    [INFLUENCE_CUBIC_SPLINE] = {"cubic-spline", cubic_spline},
 };
 enum { COUNT = sizeof influences / sizeof *influences };
 
-const Influence *influence_find(const char *name)
+const Influence *influence_at(int k)
 {
-  for (int k = 0; k < COUNT; ++k)
-    if (!strcmp(influences[k].name, name)) return &influences[k];
-  return 0;
+  return &influences[k];
 }
 
 const char *influence_word(int k)

@@ -7,7 +7,17 @@ typedef struct Influence {
   double (*value)(double q, double length);
 } Influence;
 
-const Influence *influence_find(const char *name);
+/** Influence functions by their numbers in the deck. */
+enum {
+  INFLUENCE_CONSTANT,
+  INFLUENCE_CONICAL,
+  INFLUENCE_INVERSE,
+  INFLUENCE_INVERSE_SQUARE,
+  INFLUENCE_GAUSSIAN,
+  INFLUENCE_QUARTIC,
+  INFLUENCE_CUBIC_SPLINE
+};
+const Influence *influence_at(int k);
 /** k-th name, for the deck. */
 const char *influence_word(int k);
 

@@ -90,7 +90,7 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
   int status = cells_create(&cells, p, (const double *const *)p->position, farthest, error);
   stored->first = memory_zeroed((size_t)p->places + 1, sizeof(int64_t), "stored bonds", error);
   if (!stored->first) status = BRECCIA_FAILURE;
-  const bool weighted = weight->correction != VOLUME_WHOLE || weight->influence != influence_find("constant");
+  const bool weighted = weight->correction != VOLUME_WHOLE || weight->influence != influence_at(INFLUENCE_CONSTANT);
   const double nearest = 0.01 * body->largest_spacing;
   Search search = {&cells, body, weight, weighted, farthest * farthest, nearest * nearest};
   Sweep sweep = {.search = &search, .stored = stored};

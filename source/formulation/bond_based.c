@@ -13,14 +13,11 @@
 
 typedef struct BondBasedSpec {
   SectionHead head;
-  const char *calibration, *surface_correction, *strength_of;
+  int calibration, surface_correction, strength_of; /* numbers of their words */
 } BondBasedSpec;
 
-static const char *const calibrations[] = {"continuum", "uniform-expansion", "uniaxial", NULL};
-static const char *calibration_word(int k)
-{
-  return calibrations[k];
-}
+enum { SURFACE_AS_IS, SURFACE_BY_ENERGY };
+enum { STRENGTH_OF_BODY, STRENGTH_OF_BONDS };
 
 static const Field bond_based_fields[] = {
     {.key = "calibration",
@@ -30,14 +27,17 @@ static const Field bond_based_fields[] = {
      .meaning =
          "which field shall have the energy of the continuum on this lattice, or whether the continuum's integrals are "
          "taken",
-     .choice = calibration_word},
+     .words = (const char *const[]){[CALIBRATION_CONTINUUM] = "continuum",
+                                    [CALIBRATION_EXPANSION] = "uniform-expansion",
+                                    [CALIBRATION_UNIAXIAL] = "uniaxial",
+                                    NULL}},
     {.key = "surface correction",
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondBasedSpec, surface_correction),
      .standard = "none",
      .meaning = "stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along "
                 "each axis costs them as much energy as inside",
-     .words = (const char *const[]){"none", "energy", NULL}},
+     .words = (const char *const[]){[SURFACE_AS_IS] = "none", [SURFACE_BY_ENERGY] = "energy", NULL}},
     {.key = "strength of",
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondBasedSpec, strength_of),
@@ -46,7 +46,7 @@ static const Field bond_based_fields[] = {
                 "uniaxial tension in its strongest direction, and bonds carry less. `bonds`: each bond carries the "
                 "strength, as published, and a body carries 1.1 to 2 times as much; always so for laws without a "
                 "fracture energy, bars and lines",
-     .words = (const char *const[]){"body", "bonds", NULL}},
+     .words = (const char *const[]){[STRENGTH_OF_BODY] = "body", [STRENGTH_OF_BONDS] = "bonds", NULL}},
 };
 static const Section bond_based_section = {.name = "bond-based",
                                            .about = "Keys of `peridynamics` with `formulation: bond-based`.",
@@ -98,11 +98,9 @@ static void *create(const FormulationParts *parts, Error *error)
                    .space = parts->space,
                    .influence = parts->influence};
   static const BondBasedSpec standard = {
-      .calibration = "uniform-expansion", .surface_correction = "none", .strength_of = "body"};
+      .calibration = CALIBRATION_EXPANSION, .surface_correction = SURFACE_AS_IS, .strength_of = STRENGTH_OF_BODY};
   const BondBasedSpec *spec = parts->keys ? parts->keys : &standard;
-  b->strength_of_body = !strcmp(spec->strength_of, "body");
-  int calibration = 0;
-  while (strcmp(calibrations[calibration], spec->calibration)) ++calibration;
+  b->strength_of_body = spec->strength_of == STRENGTH_OF_BODY;
   const Family *f = b->family;
   b->stiffness = memory_zeroed((size_t)b->body->block_count, sizeof(double), "bond constants", error);
   b->range = memory_zeroed((size_t)b->particles->slices, 1, "bond constants", error);
@@ -115,7 +113,7 @@ static void *create(const FormulationParts *parts, Error *error)
   for (int64_t slice = 0; slice < b->particles->slices; ++slice) bond_note_gaps(b, slice);
   for (int block = 0; block < b->body->block_count; ++block) {
     if (block_is_foreign(b->foreign, b->particles, block)) continue;
-    double factor = bond_calibration(b, block, (Calibration)calibration) * bond_continuum_constant(b, 1);
+    double factor = bond_calibration(b, block, (Calibration)spec->calibration) * bond_continuum_constant(b, 1);
     if (!(factor > 0) || !isfinite(factor)) {
       if (!b->body->lattices[block].chunks)
         error_add(
@@ -135,7 +133,7 @@ static void *create(const FormulationParts *parts, Error *error)
     b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
-  if ((!strcmp(spec->surface_correction, "energy") && bond_correct_surface(b, error)) ||
+  if ((spec->surface_correction == SURFACE_BY_ENERGY && bond_correct_surface(b, error)) ||
       bond_lateral_create(b, error)) {
     destroy(b);
     return NULL;
@@ -185,8 +183,8 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double lateral = bond_lateral(b, place, &bond);
-  const double elastic = b->bonds ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0)
-                                  : length - bond.length;
+  const double elastic =
+      b->bonds ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0) : length - bond.length;
   const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }

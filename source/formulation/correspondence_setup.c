@@ -10,22 +10,17 @@ typedef struct ControlSpec { /* of zero-energy modes; exactly one of silling, wa
   SectionHead head;
   double silling, wan;
   bool none;
-  const char *fades;
+  int fades; /* ControlFades */
 } ControlSpec;
 
 typedef struct CorrespondenceSpec {
   SectionHead head;
-  const char *strain;
+  int strain; /* StrainMeasure */
   ControlSpec *control;
 } CorrespondenceSpec;
 
 static const char *const fade_words[] = {
     [FADES_NEVER] = "never", [FADES_WITH_SOFTENING] = "softening", [FADES_WITH_YIELDING] = "yielding", NULL};
-
-static const char *fade_word(int k)
-{
-  return fade_words[k];
-}
 
 static const Field control_fields[] = {
     {.key = "silling",
@@ -58,7 +53,7 @@ static const Field control_fields[] = {
      .meaning = "with the stiffness that a point has lost, for good: where its law softens; or also where it yields, "
                 "which limit loads of soil need, as control would carry more and more besides. Not for loads that come "
                 "and go: what has faded does not come back where a point is elastic again",
-     .choice = fade_word},
+     .words = fade_words},
 };
 static const Section control_section = {
     .name = "zero-energy control",
@@ -72,7 +67,7 @@ static const Field correspondence_fields[] = {
      .offset = offsetof(CorrespondenceSpec, strain),
      .standard = "green-lagrange",
      .meaning = "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations",
-     .words = (const char *const[]){"green-lagrange", "small", NULL}},
+     .words = strain_measure_words},
     {.key = "zero-energy control",
      .kind = FIELD_SECTION,
      .offset = offsetof(CorrespondenceSpec, control),
@@ -224,7 +219,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   c->sweeps = correspondence_sweeps_chosen();
   const CorrespondenceSpec *spec = parts->keys;
   const ControlSpec *control = spec->control;
-  c->finite = !strcmp(spec->strain, "green-lagrange");
+  c->finite = spec->strain == STRAIN_GREEN_LAGRANGE;
   const double horizon = parts->family->horizon;
   c->influence_falls = parts->influence->value(0.75, 0.75 * horizon) < parts->influence->value(0.25, 0.25 * horizon);
   c->control = CONTROL_SCALAR;
@@ -235,9 +230,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     c->strength = control->wan;
   }
   if ((control && control->none) || c->strength == 0) c->control = CONTROL_NONE;
-  c->fades = FADES_WITH_SOFTENING;
-  for (int k = 0; control && fade_words[k]; ++k)
-    if (!strcmp(control->fades, fade_words[k])) c->fades = (ControlFades)k;
+  c->fades = control ? (ControlFades)control->fades : FADES_WITH_SOFTENING;
 
   int64_t places = parts->particles->places;
   int failed = 0;

@@ -26,15 +26,21 @@ const FormulationType *formulation_find(const char *name)
   return NULL;
 }
 
+const char *const strain_measure_words[] = {[STRAIN_GREEN_LAGRANGE] = "green-lagrange", [STRAIN_SMALL] = "small", NULL};
+
 static const char *formulation_word(int k)
 {
   return k < COUNT ? formulations[k]->name : NULL;
 }
 
-static const char *const spaces[] = {"3-D", "plane strain", "plane stress", "1-D", NULL};
-static const char *space_word(int k)
+const char *space_word(int k)
 {
-  return spaces[k];
+  static const char *const words[] = {[SPACE_3D] = "3-D",
+                                      [SPACE_PLANE_STRAIN] = "plane strain",
+                                      [SPACE_PLANE_STRESS] = "plane stress",
+                                      [SPACE_BAR] = "1-D",
+                                      NULL};
+  return words[k];
 }
 static const Section *formulation_keys(int k)
 {
@@ -120,9 +126,7 @@ const Section peridynamics_section = {
 
 Space peridynamics_space(const PeridynamicsSpec *spec)
 {
-  int k = 0;
-  while (strcmp(spaces[k], spec->space)) ++k;
-  return (Space)k;
+  return (Space)spec->space;
 }
 
 Length peridynamics_horizon(const PeridynamicsSpec *spec)
@@ -132,7 +136,7 @@ Length peridynamics_horizon(const PeridynamicsSpec *spec)
   if (!isnan(spec->horizon.value)) return spec->horizon;
   for (int r = -1; r < spec->regions.count; ++r) {
     const RegionSpec *region = r < 0 ? NULL : spec->regions.items[r];
-    const double own = formulation_find(region ? region->formulation : spec->formulation)->horizon;
+    const double own = formulation_at(region ? region->formulation : spec->formulation)->horizon;
     longest = fmax(longest, own > 0 ? own : usual);
   }
   return (Length){longest, true};

@@ -10,7 +10,7 @@
 
 typedef struct PeridynamicsSpec {
   SectionHead head;
-  const char *formulation, *space, *influence, *volume_correction;
+  int formulation, space, influence, volume_correction; /* numbers of their words */
   Length horizon;
   void *keys;          /* the struct of the formulation's own section */
   SectionList regions; /* of RegionSpec */
@@ -20,15 +20,21 @@ typedef struct PeridynamicsSpec {
 typedef struct RegionSpec {
   SectionHead head;
   TextList blocks;
-  const char *formulation;
+  int formulation; /* number of its word */
   void *keys;
 } RegionSpec;
 
 extern const Section peridynamics_section;
 
+/** Words of `space`, NULL after the last. */
+const char *space_word(int k);
 Space peridynamics_space(const PeridynamicsSpec *spec);
 /** The horizon of the deck, or where it gives none the longest that its formulations want. */
 Length peridynamics_horizon(const PeridynamicsSpec *spec);
+
+/** Measures of strain that laws of six components take, in the order of strain_measure_words. */
+typedef enum StrainMeasure { STRAIN_GREEN_LAGRANGE, STRAIN_SMALL } StrainMeasure;
+extern const char *const strain_measure_words[];
 
 enum { CARRY = 9 };
 

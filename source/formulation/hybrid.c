@@ -12,9 +12,11 @@
 
 typedef struct HybridSpec {
   SectionHead head;
-  const char *form, *strain;
+  int form, strain; /* number of its word; StrainMeasure */
   double own;
 } HybridSpec;
+
+enum { FORM_VARIATIONAL, FORM_PAIRWISE };
 
 static const Field hybrid_fields[] = {
     {.key = "form",
@@ -25,13 +27,13 @@ static const Field hybrid_fields[] = {
          "variational: the stress of a bond acts on all particles that its strain comes from, so that momenta and "
          "energy are kept; pairwise: on its two ends only, as published, with a stiffness that is not symmetric: "
          "needs stiffness damping where it moves, and no bond of it breaks in motion",
-     .words = (const char *const[]){"variational", "pairwise", NULL}},
+     .words = (const char *const[]){[FORM_VARIATIONAL] = "variational", [FORM_PAIRWISE] = "pairwise", NULL}},
     {.key = "strain",
      .kind = FIELD_CHOICE,
      .offset = offsetof(HybridSpec, strain),
      .standard = "green-lagrange",
      .meaning = "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations",
-     .words = (const char *const[]){"green-lagrange", "small", NULL}},
+     .words = strain_measure_words},
     {.key = "own bond",
      .kind = FIELD_NUMBER,
      .offset = offsetof(HybridSpec, own),
@@ -99,8 +101,8 @@ static void *create(const FormulationParts *parts, Error *error)
                 .hooke_sweep = hybrid_hooke_chosen(),
                 .foreign = parts->foreign,
                 .space = parts->space,
-                .finite = !strcmp(spec->strain, "green-lagrange"),
-                .pairwise = !strcmp(spec->form, "pairwise"),
+                .finite = spec->strain == STRAIN_GREEN_LAGRANGE,
+                .pairwise = spec->form == FORM_PAIRWISE,
                 .own = spec->own,
                 .dimensions = parts->body->dimensions,
                 .hidden = {-1, -1}};

@@ -11,9 +11,11 @@
 
 typedef struct MicropolarSpec {
   SectionHead head;
-  const char *kinematics;
+  int kinematics; /* number of its word */
   double torsion;
 } MicropolarSpec;
+
+enum { KINEMATICS_COROTATIONAL, KINEMATICS_OF_THESIS };
 
 static const Field micropolar_fields[] = {
     {.key = "kinematics",
@@ -23,7 +25,8 @@ static const Field micropolar_fields[] = {
      .meaning = "corotational: links turn with their ends, at any rotation; thesis: the stiffness along the present "
                 "direction times all of the displacements and rotations, as in Tuniki 2012, in the plane only: it "
                 "resists rigid rotation and is there to compare with",
-     .words = (const char *const[]){"corotational", "thesis", NULL}},
+     .words =
+         (const char *const[]){[KINEMATICS_COROTATIONAL] = "corotational", [KINEMATICS_OF_THESIS] = "thesis", NULL}},
     {.key = "torsion",
      .kind = FIELD_NUMBER,
      .offset = offsetof(MicropolarSpec, torsion),
@@ -48,7 +51,7 @@ static int check(const void *keys, const Body *body, const DeckReader *reader)
   if (body->dimensions == 1)
     return node_error(reader->document, section_node(keys, "formulation"), reader->error,
                       "formulation: micropolar has no shear along a line; bars take bond-based");
-  if (body->dimensions == 3 && !strcmp(spec->kinematics, "thesis"))
+  if (body->dimensions == 3 && spec->kinematics == KINEMATICS_OF_THESIS)
     return node_error(reader->document, section_node(keys, "kinematics"), reader->error,
                       "kinematics: thesis is of plane bodies; leave it out");
   return BRECCIA_OK;
@@ -89,7 +92,7 @@ static void fill_rows(Micropolar *m, int block)
 
 static void *create(const FormulationParts *parts, Error *error)
 {
-  static const MicropolarSpec standard = {.kinematics = "corotational", .torsion = 1};
+  static const MicropolarSpec standard = {.kinematics = KINEMATICS_COROTATIONAL, .torsion = 1};
   const MicropolarSpec *spec = parts->keys ? parts->keys : &standard;
   Micropolar *m = memory_zeroed(1, sizeof *m, "micropolar", error);
   if (!m) return NULL;
@@ -102,7 +105,7 @@ static void *create(const FormulationParts *parts, Error *error)
                     .foreign = parts->foreign,
                     .space = parts->space,
                     .influence = parts->influence,
-                    .secant = !strcmp(spec->kinematics, "thesis"),
+                    .secant = spec->kinematics == KINEMATICS_OF_THESIS,
                     .torsion = spec->torsion,
                     .sweeps = parts->space == SPACE_3D ? micropolar_space_chosen() : micropolar_plane_chosen()};
   const int blocks = m->body->block_count;

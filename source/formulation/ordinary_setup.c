@@ -10,8 +10,10 @@
 
 typedef struct OrdinarySpec {
   SectionHead head;
-  const char *weights;
+  int weights; /* number of its word */
 } OrdinarySpec;
+
+enum { WEIGHTS_ISOTROPIC, WEIGHTS_PLAIN };
 
 static const Field ordinary_fields[] = {
     {.key = "lattice weights",
@@ -22,7 +24,7 @@ static const Field ordinary_fields[] = {
          "isotropic: bonds count more or less by their direction, such that lattices, families at surfaces and of "
          "particles from files show their moduli in all directions; plain: as in most codes, 16 % off along the axes "
          "of a cubic lattice at 3.015 spacings, and far too stiff in thin parts",
-     .words = (const char *const[]){"isotropic", "plain", NULL}},
+     .words = (const char *const[]){[WEIGHTS_ISOTROPIC] = "isotropic", [WEIGHTS_PLAIN] = "plain", NULL}},
 };
 const Section ordinary_section = {.name = "ordinary",
                                   .about = "Keys of `peridynamics` with `formulation: ordinary`.",
@@ -207,9 +209,9 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
   }
   o->sweeps = ordinary_sweeps_chosen();
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
-  for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
+  for (int block = 0; block < o->body->block_count && spec->weights == WEIGHTS_ISOTROPIC; ++block)
     ordinary_balance(o, block);
-  if (!strcmp(spec->weights, "isotropic") && ordinary_balance_families(o, error)) {
+  if (spec->weights == WEIGHTS_ISOTROPIC && ordinary_balance_families(o, error)) {
     ordinary_destroy(o);
     return NULL;
   }

@@ -59,7 +59,7 @@ static const Field load_fields[] = {
          "and as they would have, so that an even stress up to the face is exact: standard for one layer of square and "
          "cubic lattices in formulations that can tell (hybrid and correspondence). layers: evenly over the layers of "
          "the face",
-     .words = (const char *const[]){"bonds", "layers", NULL}},
+     .words = (const char *const[]){[SPREAD_BY_BONDS] = "bonds", [SPREAD_OVER_LAYERS] = "layers", NULL}},
     {.key = "platen",
      .kind = FIELD_CHOICE,
      .offset = offsetof(LoadSpec, platen),
@@ -68,7 +68,7 @@ static const Field load_fields[] = {
                 "freely about its centre, as on a ball joint, and 'on' moves in the mean: standard for one patch, "
                 "narrower than the body, that moves and to no particle of which another motion is prescribed. fixed: "
                 "all particles move alike, and the plate takes a moment",
-     .words = (const char *const[]){"turning", "fixed", NULL}},
+     .words = (const char *const[]){[PLATEN_TURNS] = "turning", [PLATEN_FIXED] = "fixed", NULL}},
     {.key = "only presses",
      .kind = FIELD_FLAG,
      .offset = offsetof(LoadSpec, only_presses),
@@ -121,10 +121,10 @@ static void check_load(const DeckReader *reader, void *section)
                "area: only a 'traction' has one, and a pressure on particles from a file");
   if (node_get(load->head.node, "centre") && isnan(load->area))
     node_error(reader->document, section_node(load, "centre"), reader->error, "centre: needs the 'area' of the face");
-  if (load->spread && !on_face)
+  if (load->spread >= 0 && !on_face)
     node_error(reader->document, section_node(load, "spread"), reader->error,
                "spread: only of a traction, a pressure or a water pressure");
-  if (load->platen && !types[k]->platen)
+  if (load->platen >= 0 && !types[k]->platen)
     node_error(reader->document, section_node(load, "platen"), reader->error,
                "platen: only of a prescribed displacement, velocity or acceleration, or of 'along'");
   if (load->only_presses && !types[k]->may_press)
@@ -155,7 +155,7 @@ static int check_directions(const Load *load, int dimensions, const DeckReader *
 int load_create(Load *load, const LoadSpec *spec, const LoadMaking *making)
 {
   static const Node everywhere = {.kind = NODE_MAP};
-  SelectionSpec all = {.head = {NULL, &everywhere}, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
+  SelectionSpec all = {.head = {NULL, &everywhere}, .face = -1, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
   Reference reference = spec->on;
   if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
   const int k = index_of(spec);

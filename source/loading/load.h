@@ -23,6 +23,9 @@ enum {
   LOADS
 };
 
+typedef enum LoadSpread { SPREAD_BY_BONDS, SPREAD_OVER_LAYERS } LoadSpread;
+typedef enum LoadPlaten { PLATEN_TURNS, PLATEN_FIXED } LoadPlaten;
+
 typedef struct LoadSpec {
   SectionHead head;
   const char *name;
@@ -30,7 +33,7 @@ typedef struct LoadSpec {
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
   double area, centre[3];
-  const char *spread, *platen;
+  int spread, platen; /* LoadSpread, LoadPlaten; -1: not said */
   bool only_presses;
 } LoadSpec;
 

@@ -227,7 +227,7 @@ static bool platen_is_mirrored(const Constraint *c, const Body *body)
 /** Returns true if a platen is under a load of which the deck does not say so, if the load moves a single patch. */
 static bool platen_is_usual(const Loading *loading, const Constraint *c, const Body *body)
 {
-  return !c->load->spec->platen && c->value != 0 && platen_is_narrow(c, body) &&
+  return c->load->spec->platen < 0 && c->value != 0 && platen_is_narrow(c, body) &&
          !platen_is_held_across(loading, c, &body->particles) && !platen_is_mirrored(c, body);
 }
 
@@ -241,7 +241,7 @@ static int platen_choose(const LoadMaking *making, const Load *load)
     found = &loading->constraints[c];
     ++count;
   }
-  const bool wanted = load->spec->platen && !strcmp(load->spec->platen, "turning");
+  const bool wanted = load->spec->platen == PLATEN_TURNS;
   if (wanted && count != 1)
     return node_error(making->reader->document, section_node(load->spec, "platen"), making->reader->error,
                       "platen: one that turns has its motion prescribed in one direction, and here it is in %d; give "

@@ -59,6 +59,14 @@ int laboratory_read_path(breccia_test *test, const char *path, Error *error)
                        : error_add(error, BRECCIA_USER_ERROR, "%s: has no row of strains", path);
 }
 
+/** Number of a word of the command line among those of a table; -1: it is none of them. */
+static int number_of_word(const char *(*word)(int k), const char *given)
+{
+  for (int k = 0; word(k); ++k)
+    if (!strcmp(word(k), given)) return k;
+  return -1;
+}
+
 /** The kind of a test and its numbers. */
 static int read_test(const breccia_test_words *words, const Units *units, TestSpec *spec, Error *error)
 {
@@ -69,25 +77,24 @@ static int read_test(const breccia_test_words *words, const Units *units, TestSp
                  {"return", words->back, "1", &spec->back},
                  {"confining", words->confining, "stress", &spec->confining},
                  {"duration", words->duration, "time", &spec->duration}};
-  *spec = (TestSpec){.kind = words->kind,
-                     .zero = words->strain_zero ? words->strain_zero : test_zero_word(0),
+  *spec = (TestSpec){.kind = number_of_word(test_kind_word, words->kind),
+                     .zero = words->strain_zero ? number_of_word(test_zero_word, words->strain_zero) : 0,
                      .strain = NAN,
                      .back = NAN,
                      .duration = NAN,
                      .cycles = words->cycles,
                      .steps = words->steps ? words->steps : USUAL_STEPS};
-  int status = BRECCIA_OK, kind = 0;
-  while (test_kind_word(kind) && strcmp(test_kind_word(kind), words->kind)) ++kind;
-  if (!test_kind_word(kind)) {
+  int status = BRECCIA_OK;
+  if (spec->kind < 0) {
     Text known = {0};
     for (int k = 0; test_kind_word(k); ++k) text_add(&known, "%s'%s'", k ? ", " : "", test_kind_word(k));
     status = error_add(error, BRECCIA_USER_ERROR, "--test '%s' is not known; the tests are %s", words->kind,
                        text_words(&known));
     text_free(&known);
   }
-  if (strcmp(spec->zero, test_zero_word(0)) && strcmp(spec->zero, test_zero_word(1)))
-    status = error_add(error, BRECCIA_USER_ERROR, "--strain-zero '%s' is not known; choose '%s' or '%s'", spec->zero,
-                       test_zero_word(0), test_zero_word(1));
+  if (spec->zero < 0)
+    status = error_add(error, BRECCIA_USER_ERROR, "--strain-zero '%s' is not known; choose '%s' or '%s'",
+                       words->strain_zero, test_zero_word(0), test_zero_word(1));
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k) {
     Text reason = {0};
     if (numbers[k].words &&

@@ -124,7 +124,7 @@ static int keep_bonds(breccia_model *model, Error *error)
   if (!failure) return BRECCIA_OK;
   uint8_t *marked = memory_zeroed(places, 1, "kept bonds", error);
   int status = marked ? BRECCIA_OK : BRECCIA_FAILURE;
-  if (!status && failure->near_grips && !strcmp(failure->near_grips, "hold")) {
+  if (!status && failure->near_grips == NEAR_GRIPS_HOLD) {
     mark_grips(model, marked);
     status = domain_hold_grips(&model->domain, marked, error);
   }

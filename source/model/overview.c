@@ -63,7 +63,7 @@ int model_expect(breccia_model *model, Error *error)
   const Domain *d = &model->domain;
   Entry entry;
   if (model->begun || model->outlook.state_bytes > 0) return BRECCIA_OK;
-  ResultNames names = {.single = !strcmp(model->spec->results->precision, "single")};
+  ResultNames names = {.single = model->spec->results->precision == PRECISION_SINGLE};
   TextList list;
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   StepCost cost;
@@ -125,8 +125,8 @@ static void describe_stages(const breccia_model *model, const char *time, Text *
     const SolveSpec *stage = s->stages->items[k];
     text_add(text, "stage '%s': ", solver_stage_name(s, k, name, sizeof name));
     solver_describe_stage(s, k, time, text);
-    if (!strcmp(stage->laws, "elastic")) text_add(text, ", elastic");
-    if (!strcmp(stage->displacements, "zero")) text_add(text, ", displacements from zero");
+    if (stage->laws == LAWS_ELASTIC) text_add(text, ", elastic");
+    if (stage->displacements == DISPLACEMENTS_FROM_ZERO) text_add(text, ", displacements from zero");
     if (stage->loads.count) text_add(text, ", %d new load%s", stage->loads.count, stage->loads.count > 1 ? "s" : "");
     text_add(text, "\n");
   }

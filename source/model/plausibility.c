@@ -566,8 +566,8 @@ static void find_faces(const breccia_model *model, int held[3], int mirrored[3])
   for (int n = 0; n < loading->constraint_count; ++n) {
     const Constraint *c = &loading->constraints[n];
     const SelectionSpec *on = selection_spec(&model->spec->selections, &c->load->spec->on);
-    if (!on || !on->face) continue;
-    const int axis = on->face[0] - 'x', side = on->face[1] == '+' ? 2 : 1;
+    if (!on || on->face < 0) continue;
+    const int axis = selection_axis(on), side = selection_side(on) > 0 ? 2 : 1;
     held[axis] |= side;
     if (c->images && c->share > 0) mirrored[axis] |= side;
   }

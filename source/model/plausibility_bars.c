@@ -187,7 +187,7 @@ static void check_stiffness(breccia_model *model, const BondSpec *bond, const ch
 static void check_bond(breccia_model *model, const BondSpec *bond)
 {
   if (!bond) return;
-  if (!strcmp(bond->law, "linear")) {
+  if (bond->law == BOND_LINEAR) {
     check_stiffness(model, bond, "stiffness", bond->stiffness);
     return;
   }

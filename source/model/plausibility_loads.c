@@ -166,7 +166,7 @@ static bool settles(const breccia_model *model, int64_t number)
   const SolveSpec *stage = model->solver.stages->items[number];
   const ExplicitSpec *steps = stage->of[SOLVER_explicit];
   const ImplicitSpec *implicit = stage->of[SOLVER_implicit];
-  if (solver_stage_rests(&model->solver, number) || !strcmp(stage->laws, "elastic")) return true;
+  if (solver_stage_rests(&model->solver, number) || stage->laws == LAWS_ELASTIC) return true;
   if (steps && (!isnan(steps->rest) || steps->local_damping > 0)) return true;
   const DampingKeys *keys = steps ? &steps->damping_given : implicit ? &implicit->damping_given : NULL;
   return keys && damping_ratio(keys) >= strong;
@@ -224,7 +224,7 @@ static void check_grips(breccia_model *model)
   const Domain *d = &model->domain;
   const FailureSpec *failure = model->spec->failure; /* laws that soften are not held by it */
   const CriticalStretchSpec *stretch = critical_stretch_spec(failure);
-  if (!failure || failure->near_grips || failure->nowhere.count ||
+  if (!failure || failure->near_grips >= 0 || failure->nowhere.count ||
       (stretch && isnan(stretch->stretch) && isnan(stretch->fracture_energy)))
     return;
   for (int k = 0; k < model->loading.count; ++k) {
@@ -474,8 +474,8 @@ static void check_elastic_stage(breccia_model *model)
   const SectionList *stages = model->solver.stages;
   double gravity[3];
   bool yields = false;
-  if (strcmp(((const SolveSpec *)stages->items[0])->laws, "elastic") != 0 || d->begins_under_stress) return;
-  for (int k = 1; k < stages->count; ++k) yields |= strcmp(((const SolveSpec *)stages->items[k])->laws, "elastic") != 0;
+  if (((const SolveSpec *)stages->items[0])->laws != LAWS_ELASTIC || d->begins_under_stress) return;
+  for (int k = 1; k < stages->count; ++k) yields |= ((const SolveSpec *)stages->items[k])->laws != LAWS_ELASTIC;
   find_gravity(model, gravity);
   if (!yields || (gravity[0] == 0 && gravity[1] == 0 && gravity[2] == 0)) return;
   for (int k = 0; k < d->material_count; ++k) {

@@ -89,9 +89,9 @@ static int check_bars(const breccia_model *model, const PictureSpec *picture)
     const int status = check_bar_name(model, b, picture, picture->of_bars.items[k]);
     if (status) return status;
   }
-  if (bar_column_is_there(bar_column_find(picture->bars), b)) return BRECCIA_OK;
+  if (bar_column_is_there(bar_column_at(picture->bars), b)) return BRECCIA_OK;
   return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
-                    picture->bars);
+                    bar_column_name(picture->bars));
 }
 
 /** A column that a curve draws is one that a history of the deck will write. */
@@ -151,7 +151,7 @@ int model_check_results(breccia_model *model)
   for (int k = 0; k < spec->pictures.count; ++k) {
     const PictureSpec *picture = spec->pictures.items[k];
     if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
-    int bad = picture->bars ? check_bars(model, picture) : BRECCIA_OK;
+    int bad = picture->bars >= 0 ? check_bars(model, picture) : BRECCIA_OK;
     if (bad) status = bad;
     if (!picture->field) continue;
     TextList one = {(const char *[]){picture->field}, 1};

@@ -272,7 +272,7 @@ static int open_files(Run *run, Error *error)
   breccia_model *model = run->model;
   const ResultNames names = {.fields = run->names.items,
                              .count = run->names.count,
-                             .single = !strcmp(model->spec->results->precision, "single"),
+                             .single = model->spec->results->precision == PRECISION_SINGLE,
                              .deck = text_words(&model->deck)};
   int status = refuse_links(run, error);
   if (!status) status = spare_files_of_others(run, error);

@@ -3,6 +3,7 @@
 
 #include "bars/bars.h"
 #include "base/folder.h"
+#include "results/bar_columns.h"
 #include "results/bar_curve.h"
 #include "results/curve.h"
 #include "results/result_view.h"
@@ -40,7 +41,7 @@ static PictureOptions picture_options(const PictureSpec *spec)
 {
   return (PictureOptions){.field = spec->field,
                           .component = spec->component,
-                          .bars = spec->bars,
+                          .bars = spec->bars < 0 ? NULL : bar_column_name(spec->bars),
                           .title = spec->title,
                           .x_label = spec->x_label,
                           .y_label = spec->y_label,
@@ -63,8 +64,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
     const int step = spec->times.count ? result_view_nearest(view, spec->times.values[t]) : view->steps - 1;
     if (step < 0) continue; /* the run did not come so far */
     char name[160];
-    picture_name(view, step, spec->bars ? "bars" : spec->field, spec->bars ? spec->bars : spec->component,
-                 spec->times.count > 0, name, sizeof name);
+    picture_name(view, step, o.bars ? "bars" : spec->field, o.bars ? o.bars : spec->component, spec->times.count > 0,
+                 name, sizeof name);
     char *path = picture_path(run, spec->times.count > 1 ? NULL : spec->name, name);
     if (spec->name && spec->times.count > 1) { /* the times tell its pictures apart */
       char whole[256];
@@ -88,13 +89,13 @@ static int draw_over_length(Run *run, const ResultView *view, const PictureSpec 
   if (spec->times.count && !count) return BRECCIA_OK;
   if (!count) steps[count++] = view->steps - 1;
   char words[128];
-  snprintf(words, sizeof words, "bar %.100s", spec->bars);
+  snprintf(words, sizeof words, "bar %.100s", bar_column_name(spec->bars));
   char *path = picture_path(run, spec->name, words);
-  const BarCurveOptions o = {.column = spec->bars,
+  const BarCurveOptions o = {.column = bar_column_name(spec->bars),
                              .title = spec->title,
                              .x_label = spec->x_label,
                              .y_label = spec->y_label,
-                             .log_axes = spec->log_axes,
+                             .log_axes = picture_log_axes(spec->log_axes),
                              .names = spec->of_bars.items,
                              .name_count = spec->of_bars.count,
                              .steps = steps,
@@ -120,7 +121,7 @@ static int draw_curve(Run *run, const PictureSpec *spec, bool *no_gnuplot, Error
   const CurveOptions o = {.title = spec->title ? spec->title : run->model->spec->title,
                           .x_label = spec->x_label,
                           .y_label = spec->y_label,
-                          .log_axes = spec->log_axes,
+                          .log_axes = picture_log_axes(spec->log_axes),
                           .low = spec->range[0],
                           .high = spec->range[1],
                           .no_gnuplot = no_gnuplot};
@@ -142,9 +143,9 @@ static void draw(Run *run, const ResultView *view, const PictureSpec *spec, Outc
 {
   Error *own = breccia_error_create();
   bool no_gnuplot = false;
-  const int status = spec->over_length           ? draw_over_length(run, view, spec, &no_gnuplot, own)
-                     : spec->field || spec->bars ? draw_field(run, view, spec, own)
-                                                 : draw_curve(run, spec, &no_gnuplot, own);
+  const int status = spec->over_length                ? draw_over_length(run, view, spec, &no_gnuplot, own)
+                     : spec->field || spec->bars >= 0 ? draw_field(run, view, spec, own)
+                                                      : draw_curve(run, spec, &no_gnuplot, own);
   const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
   if (unwritten) outcome->status = BRECCIA_FAILURE;
   if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
@@ -171,11 +172,15 @@ static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
   for (int k = 0; deck_usual_pictures(run->model->spec) && k < 3; ++k) {
     bool written = false;
     for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
-    const PictureSpec spec = {
-        .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
+    const PictureSpec spec = {.field = usual[k],
+                              .bars = -1,
+                              .deformed = 1,
+                              .view = {NAN, NAN, NAN},
+                              .range = {NAN, NAN, NAN},
+                              .same_range = true};
     if (written) draw(run, view, &spec, outcome);
   }
-  const PictureSpec stress = {.bars = "stress", .over_length = true, .range = {NAN, NAN, NAN}};
+  const PictureSpec stress = {.bars = BAR_STRESS, .over_length = true, .range = {NAN, NAN, NAN}};
   if (deck_usual_pictures(run->model->spec) && bars_among(&run->model->domain.forces))
     draw(run, view, &stress, outcome);
   for (int k = 0; k < own->count; ++k) draw(run, view, own->items[k], outcome);

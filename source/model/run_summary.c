@@ -131,7 +131,7 @@ static void add_stages(const breccia_model *model, Text *text)
     text_add(text, "%s{\"name\": ", k ? ", " : "");
     text_add_json(text, solver_stage_name(s, k, name, sizeof name));
     text_add(text, ", \"steps\": [%.0f, %.0f], ", r->first_step, r->last_step);
-    const bool from_zero = k > 0 && !strcmp(((const SolveSpec *)s->stages->items[k])->displacements, "zero");
+    const bool from_zero = k > 0 && ((const SolveSpec *)s->stages->items[k])->displacements == DISPLACEMENTS_FROM_ZERO;
     text_add(text, "\"times\": [%.10g, %.10g], \"at_rest\": %s%s}", r->begin, r->end,
              ended_at_rest(model, k) ? "true" : "false", from_zero ? ", \"displacements_from_zero\": true" : "");
   }

@@ -24,8 +24,8 @@ static double dissipated(const Bars *b, int bar, int64_t e)
 }
 
 static const BarColumn columns[] = {
-    {.name = "strain", .dimension = "1", .value = strain, .has_sign = true},
-    {.name = "stress", .dimension = "stress", .value = stress, .has_sign = true},
+    [BAR_STRAIN] = {.name = "strain", .dimension = "1", .value = strain, .has_sign = true},
+    [BAR_STRESS] = {.name = "stress", .dimension = "stress", .value = stress, .has_sign = true},
     {.name = "force", .dimension = "force", .value = force, .has_sign = true},
     {.name = "dissipated", .dimension = "energy", .value = dissipated},
     {.name = "slip", .dimension = "length", .value = bar_slip_in, .of_slip = true, .has_sign = true},

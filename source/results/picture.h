@@ -8,7 +8,8 @@
 
 typedef struct PictureSpec {
   SectionHead head;
-  const char *field, *component, *curve, *bars, *title, *x_label, *y_label, *name, *log_axes;
+  const char *field, *component, *curve, *title, *x_label, *y_label, *name;
+  int bars, log_axes; /* numbers of bar_column_name, -1: none; and of picture_log_axes */
   NumberList times;
   TextList of_bars;
   double deformed, view[3], range[3]; /* view: azimuth and elevation; range: lowest and highest value */
@@ -17,6 +18,9 @@ typedef struct PictureSpec {
 } PictureSpec;
 
 extern const Section picture_section;
+
+/** Words of `log axes`, NULL after the last. */
+const char *picture_log_axes(int k);
 
 typedef struct PictureOptions {
   const char *field, *component; /* component NULL: the only one, or the length of a vector */

@@ -5,10 +5,10 @@
 
 #include <stddef.h>
 
-static const char *log_axes(int k)
+const char *picture_log_axes(int k)
 {
-  static const char *const words[] = {"none", "x", "y", "xy"};
-  return k < 4 ? words[k] : NULL;
+  static const char *const words[] = {"none", "x", "y", "xy", NULL};
+  return words[k];
 }
 
 static const Field picture_fields[] = {
@@ -126,7 +126,7 @@ static const Field picture_fields[] = {
      .offset = offsetof(PictureSpec, log_axes),
      .standard = "none",
      .meaning = "which axes of a curve are logarithmic",
-     .choice = log_axes},
+     .choice = picture_log_axes},
     {.key = "name",
      .kind = FIELD_TEXT,
      .offset = offsetof(PictureSpec, name),
@@ -153,10 +153,10 @@ static const struct {
 
 static void refuse_useless_keys(const DeckReader *reader, const PictureSpec *p)
 {
-  const int kind = p->over_length && p->bars ? OF_LENGTH
-                   : p->bars                 ? OF_BARS
-                   : p->curve || p->energy   ? OF_HISTORIES
-                                             : OF_FIELD;
+  const int kind = p->over_length && p->bars >= 0 ? OF_LENGTH
+                   : p->bars >= 0                 ? OF_BARS
+                   : p->curve || p->energy        ? OF_HISTORIES
+                                                  : OF_FIELD;
   const char *picture = kind == OF_LENGTH      ? "a curve over the length of bars"
                         : kind == OF_BARS      ? "a picture of bars"
                         : kind == OF_HISTORIES ? "a curve of histories"

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *const axes[] = {"x", "y", "z", NULL};
+
 static const Field profile_fields[] = {
     {.key = "of",
      .kind = FIELD_REFERENCE,
@@ -21,7 +23,7 @@ static const Field profile_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(ProfileSpec, along),
      .meaning = "the axis",
-     .words = (const char *const[]){"x", "y", "z", NULL}},
+     .words = axes},
     {.key = "every",
      .kind = FIELD_COUNT,
      .offset = offsetof(ProfileSpec, every),
@@ -111,10 +113,10 @@ static int find_layers(Profile *profile, const Body *body, Error *error)
 
 static int resolve(Profile *profile, const Body *body, const DeckReader *reader, const SectionList *selections)
 {
-  profile->axis = *profile->spec->along - 'x';
+  profile->axis = profile->spec->along;
   if (profile->axis >= body->dimensions)
     return node_error(reader->document, section_node(profile->spec, "along"), reader->error,
-                      "along: the body does not reach along %s; take %s", profile->spec->along,
+                      "along: the body does not reach along %s; take %s", axes[profile->spec->along],
                       body->dimensions == 1 ? "x" : "x or y");
   const int status = selection_create(&profile->selection, body, reader, selections, &profile->spec->of);
   return status ? status : find_layers(profile, body, reader->error);
@@ -248,7 +250,7 @@ static void add_heading(const Profiles *profiles, const Profile *profile, const 
 {
   char unit[64];
   units_name(units, dimension_find("length"), unit, sizeof unit);
-  text_add(text, "%s (%s)", profile->spec->along, unit);
+  text_add(text, "%s (%s)", axes[profile->spec->along], unit);
   for (int c = 0; c < PEAKS; ++c) {
     if (!is_told(profiles, c)) continue;
     units_name(units, dimension_find(columns[c].dimension), unit, sizeof unit);
@@ -310,7 +312,7 @@ static int draw_kind(const Profiles *profiles, const Profile *profile, int first
   units_name(units, dimension_find("length"), along, sizeof along);
   const PlotOptions options = {.title = profile->spec->head.name,
                                .x = {.words = words, .unit = unit},
-                               .y = {.words = profile->spec->along, .unit = along},
+                               .y = {.words = axes[profile->spec->along], .unit = along},
                                .low = NAN,
                                .high = NAN,
                                .no_gnuplot = no_gnuplot};

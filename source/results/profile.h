@@ -8,7 +8,7 @@
 typedef struct ProfileSpec {
   SectionHead head;
   Reference of;
-  const char *along;
+  int along; /* axis, from 0 */
   int64_t every;
 } ProfileSpec;
 

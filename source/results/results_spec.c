@@ -13,7 +13,7 @@ static const Field results_fields[] = {
      .offset = offsetof(ResultsSpec, precision),
      .standard = "single",
      .meaning = "of numbers in the result file",
-     .words = (const char *const[]){"single", "double", NULL}},
+     .words = (const char *const[]){[PRECISION_SINGLE] = "single", [PRECISION_DOUBLE] = "double", NULL}},
     {.key = "number",
      .kind = FIELD_COUNT,
      .offset = offsetof(ResultsSpec, number),

@@ -4,10 +4,12 @@
 
 #include "deck/section.h"
 
+typedef enum Precision { PRECISION_SINGLE, PRECISION_DOUBLE } Precision;
+
 typedef struct ResultsSpec {
   SectionHead head;
   TextList fields;
-  const char *precision; /* "single" or "double" */
+  int precision; /* Precision */
   int64_t number, every;
   NumberList times;
   int64_t checkpoint_steps;

@@ -17,7 +17,7 @@ static bool is_given(const void *section, const char *key)
 /** Keys of the scheme that is not taken. */
 static void check_scheme(const DeckReader *reader, ImplicitSpec *spec)
 {
-  const bool dissipates = !strcmp(spec->scheme, "HHT");
+  const bool dissipates = spec->scheme == SCHEME_HHT;
   static const char *const newmark[] = {"beta", "gamma"};
   for (int k = 0; k < 2 && dissipates; ++k)
     if (is_given(spec, newmark[k]))
@@ -84,7 +84,7 @@ static const Field implicit_fields[] = {
      .meaning =
          "Newmark: by 'beta' and 'gamma', whose defaults are the average acceleration, which keeps energy; HHT: by "
          "'alpha', which takes energy out of vibrations that steps are too long for",
-     .words = (const char *const[]){"Newmark", "HHT", NULL}},
+     .words = (const char *const[]){[SCHEME_NEWMARK] = "Newmark", [SCHEME_HHT] = "HHT", NULL}},
     {.key = "beta",
      .kind = FIELD_NUMBER,
      .offset = offsetof(ImplicitSpec, beta),
@@ -263,7 +263,7 @@ static int measure(Solver *run, StepCost *cost, Error *error)
 static void describe_stage(const void *section, const char *time, Text *text)
 {
   const ImplicitSpec *spec = section;
-  if (!strcmp(spec->scheme, "HHT"))
+  if (spec->scheme == SCHEME_HHT)
     text_add(text, "implicit, HHT with alpha %.3g", spec->alpha);
   else
     text_add(text, "implicit, Newmark with beta %.4g and gamma %.3g", spec->beta, spec->gamma);

@@ -7,10 +7,12 @@
 #include "solver/newton.h"
 #include "solver/pressing.h"
 
+typedef enum ImplicitScheme { SCHEME_NEWMARK, SCHEME_HHT } ImplicitScheme;
+
 typedef struct ImplicitSpec {
   SectionHead head;
   double end_time, time_step, smallest, local_error, beta, gamma, alpha;
-  const char *scheme;
+  int scheme; /* ImplicitScheme */
   DampingKeys damping_given;
   Rayleigh damping; /* from these */
   NewtonSpec newton;

@@ -31,7 +31,7 @@ int increment_check(const Solver *run, const void *section, const NewtonSpec *ne
   if (full)
     return node_error(run->reader->document, section_node(section, "equations"), error,
                       "equations: '%s' needs the stiffness as a matrix, and %s; take 'conjugate gradients'",
-                      newton->linear, full);
+                      linear_word(newton->linear), full);
   return BRECCIA_OK;
 }
 

@@ -15,7 +15,7 @@ static const LinearType *const types[] = {
 #undef LINEAR
 };
 
-static const char *const words[] = {"automatic",
+static const char *const words[] = {[LINEAR_AUTOMATIC] = "automatic",
 #define LINEAR(word, name, about) word,
 #include "solver/linear_types.h"
 #undef LINEAR
@@ -43,18 +43,16 @@ const char *linear_solver_words(const LinearSolver *s)
   return s->type->words ? s->type->words : linear_solver_name(s);
 }
 
-const char *linear_refusal(const char *word, const Unknowns *unknowns)
+const char *linear_refusal(int word, const Unknowns *unknowns)
 {
-  for (int k = 0; k < TYPES; ++k)
-    if (!strcmp(word, words[k + 1]) && types[k]->refusal) return types[k]->refusal(unknowns);
-  return NULL;
+  return word != LINEAR_AUTOMATIC && types[word - 1]->refusal ? types[word - 1]->refusal(unknowns) : NULL;
 }
 
-int linear_solver_create(LinearSolver *s, const char *word, Error *error)
+int linear_solver_create(LinearSolver *s, int word, Error *error)
 {
-  s->is_free = !strcmp(word, "automatic");
+  s->is_free = word == LINEAR_AUTOMATIC;
   for (int k = 0; k < TYPES; ++k) {
-    if (!strcmp(word, words[k + 1])) s->type = types[k];
+    if (word == k + 1) s->type = types[k];
     if (s->is_free && (!s->type || types[k]->suits(s) > s->type->suits(s))) s->type = types[k];
   }
   s->first = s->type;

@@ -60,15 +60,22 @@ struct LinearSolver {
 };
 
 /** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */
+/** Numbers of the ways to solve equations, as decks choose them. */
+enum {
+  LINEAR_AUTOMATIC,
+#define LINEAR(word, name, about) LINEAR_##name,
+#include "solver/linear_types.h"
+#undef LINEAR
+};
 const char *linear_word(int k);
 
 /** Why the matrix that a way of a deck needs is not to be had of a body under the loads that act; NULL: it is, or it needs none.
- *  @param[in] word  one of linear_word */
-const char *linear_refusal(const char *word, const Unknowns *unknowns);
+ *  @param[in] word  number of linear_word */
+const char *linear_refusal(int word, const Unknowns *unknowns);
 
 /** `solver` has domain, loading and unknowns, and is zero beyond; destroy it in any case.
- *  @param[in] word  one of linear_word */
-int linear_solver_create(LinearSolver *solver, const char *word, Error *error);
+ *  @param[in] word  number of linear_word */
+int linear_solver_create(LinearSolver *solver, int word, Error *error);
 void linear_solver_destroy(LinearSolver *solver);
 int linear_solver_prepare(LinearSolver *solver, Error *error);
 int linear_solver_solve(LinearSolver *solver, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,

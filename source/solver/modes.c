@@ -486,7 +486,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   domain_set_elastic_stage(d, elastic);
   if (!status) status = create(&s, unknowns, error);
   if (!status) status = find_symmetry(&s, error);
-  if (!status) status = linear_solver_create(&s.linear, "automatic", error);
+  if (!status) status = linear_solver_create(&s.linear, LINEAR_AUTOMATIC, error);
   if (!status) status = linear_solver_prepare(&s.linear, error);
   if (!status) status = library_memory(error);
   if (!status) {

@@ -13,7 +13,7 @@
 typedef struct NewtonSpec {
   double residual, displacement, energy; /* tolerances; NaN: not asked */
   int64_t iterations;
-  const char *linear;
+  int linear; /* number of linear_word */
 } NewtonSpec;
 
 #define NEWTON_FIELDS(type, member)                                                                                    \

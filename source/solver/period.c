@@ -173,7 +173,7 @@ int period_find(Domain *d, const Loading *loading, double time, double *period, 
   if (!status) {
     add_pull_of_motions(&s);
     unknowns_gather(&s.linear.unknowns, s.force);
-    status = linear_solver_create(&s.linear, "automatic", error);
+    status = linear_solver_create(&s.linear, LINEAR_AUTOMATIC, error);
   }
   if (!status) status = linear_solver_prepare(&s.linear, error);
   if (!status) status = iterate(&s, &square, error);

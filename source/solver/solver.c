@@ -41,7 +41,7 @@ static const Field solve_fields[] = {
      .offset = offsetof(SolveSpec, laws),
      .standard = "as given",
      .meaning = "elastic: while this stage lasts, all laws answer elastically and no bond breaks",
-     .words = (const char *const[]){"as given", "elastic", NULL}},
+     .words = (const char *const[]){[LAWS_AS_GIVEN] = "as given", [LAWS_ELASTIC] = "elastic", NULL}},
     {.key = "displacements",
      .kind = FIELD_CHOICE,
      .offset = offsetof(SolveSpec, displacements),
@@ -49,7 +49,7 @@ static const Field solve_fields[] = {
      .meaning =
          "zero: displacements that are written, drawn and watched count from the beginning of this stage; stresses, "
          "strains and what laws remember stay",
-     .words = (const char *const[]){"keep", "zero", NULL}},
+     .words = (const char *const[]){[DISPLACEMENTS_KEPT] = "keep", [DISPLACEMENTS_FROM_ZERO] = "zero", NULL}},
     {.key = "loads",
      .kind = FIELD_SECTIONS,
      .offset = offsetof(SolveSpec, loads),
@@ -120,7 +120,7 @@ void solver_describe_stage(const Solver *s, int64_t stage, const char *time, Tex
 static int check_laws(const Solver *s, Error *error)
 {
   for (int64_t k = 0; k < s->clock.stages; ++k)
-    for (int m = 0; m < s->domain->material_count && !strcmp(stage_of(s, k)->laws, "elastic"); ++m)
+    for (int m = 0; m < s->domain->material_count && stage_of(s, k)->laws == LAWS_ELASTIC; ++m)
       if (s->domain->materials[m].remote)
         return node_error(s->reader->document, section_node(stage_of(s, k), "laws"), error,
                           "laws: the law of material '%s' runs in a server, which cannot be told to be elastic for a "
@@ -139,7 +139,7 @@ static int take_stage(Solver *s, int64_t stage, Error *error)
   s->spec = s->stage->of[type_of(s->stage)];
   s->stops = NULL;
   s->stop_count = 0;
-  domain_set_elastic_stage(s->domain, !strcmp(s->stage->laws, "elastic"));
+  domain_set_elastic_stage(s->domain, s->stage->laws == LAWS_ELASTIC);
   const int status = loading_enter(s->loading, s->domain->particles, stage, error);
   return status ? status : s->type->create(s, error);
 }
@@ -176,7 +176,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   s->clock.stable = INFINITY;
   units_name(s->reader->units, dimension_find("time"), s->clock.time_unit, sizeof s->clock.time_unit);
   s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
-  for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
+  for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= stage_of(s, k)->displacements == DISPLACEMENTS_FROM_ZERO;
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
   int status = check_laws(s, error);
   if (!status) status = resultants_create(s, error);
@@ -212,7 +212,7 @@ static void leave_stage(Solver *s, const Solver *before)
 {
   if (s->own) s->type->destroy(s);
   *s = *before;
-  domain_set_elastic_stage(s->domain, !strcmp(s->stage->laws, "elastic"));
+  domain_set_elastic_stage(s->domain, s->stage->laws == LAWS_ELASTIC);
   loading_enter(s->loading, s->domain->particles, s->clock.stage, NULL);
 }
 
@@ -238,7 +238,7 @@ int solver_next_stage(Solver *s, Text *warning, Error *error)
     return status;
   }
   if (before.own) before.type->destroy(&before);
-  if (!strcmp(s->stage->displacements, "zero")) zero_displacements(s->domain->particles);
+  if (s->stage->displacements == DISPLACEMENTS_FROM_ZERO) zero_displacements(s->domain->particles);
   begin_loads(s);
   foresee(s);
   return solver_begin(s, error);

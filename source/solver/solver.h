@@ -14,12 +14,16 @@ enum {
 };
 
 /** A stage of a run: which solver, with which loads, from which displacements on. */
+typedef enum StageLaws { LAWS_AS_GIVEN, LAWS_ELASTIC } StageLaws;
+typedef enum StageDisplacements { DISPLACEMENTS_KEPT, DISPLACEMENTS_FROM_ZERO } StageDisplacements;
+
 typedef struct SolveSpec {
   SectionHead head;
-  const char *name, *laws, *displacements;
-  SectionList loads; /* that begin with it */
-  TextList without;  /* names of loads that end */
-  void *of[SOLVERS]; /* the section of the solver that is given; NULL: not this one */
+  const char *name;
+  int laws, displacements; /* StageLaws, StageDisplacements */
+  SectionList loads;       /* that begin with it */
+  TextList without;        /* names of loads that end */
+  void *of[SOLVERS];       /* the section of the solver that is given; NULL: not this one */
 } SolveSpec;
 
 extern const Section solve_section;

@@ -46,7 +46,7 @@ static const Field static_fields[] = {
      .meaning = "newton: by linearised equations; relaxation: by forces alone, as if the body came to rest in a damped "
                 "motion (dynamic relaxation): it needs no tangents, and goes on to the next state of rest where a body "
                 "gives way",
-     .words = (const char *const[]){"newton", "relaxation", NULL}},
+     .words = (const char *const[]){[METHOD_NEWTON] = "newton", [METHOD_RELAXATION] = "relaxation", NULL}},
     {.key = "relaxation iterations",
      .kind = FIELD_COUNT,
      .offset = offsetof(StaticSpec, relaxation_iterations),
@@ -116,7 +116,7 @@ static int create(Solver *run, Error *error)
   const int status = control_create(&s->control, s->spec->control, run->domain, run->reader, run->selections);
   if (status) return status;
   if (s->spec->control) s->newton.control = &s->control;
-  s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
+  s->newton.relaxes = s->spec->method == METHOD_RELAXATION;
   if (increment_create(&s->increment, run->domain, run->loading, error) || newton_create(&s->newton, error) ||
       pressing_create(&s->pressing, run->loading, error))
     return BRECCIA_FAILURE;
@@ -171,7 +171,7 @@ static int check_hold(const Solver *run, const StaticSpec *spec, Error *error)
 static int check(Solver *run, const void *section, Error *error)
 {
   const StaticSpec *spec = section;
-  const bool solves = strcmp(spec->method, "relaxation") != 0;
+  const bool solves = spec->method != METHOD_RELAXATION;
   int status = increment_check(run, section, solves ? &spec->newton : NULL,
                                "find rest by 'explicit' with 'local damping'", error);
   if (!status && !run->loose) status = check_hold(run, spec, error);
@@ -180,7 +180,7 @@ static int check(Solver *run, const void *section, Error *error)
   if (static_hands_over(spec) && section_node(last, "static") == spec->head.node)
     return node_error(run->reader->document, section_node(spec, "no equilibrium"), error,
                       "no equilibrium: no stage comes after this one; add one, as of 'explicit', or leave this out");
-  if (spec->control && !strcmp(spec->method, "relaxation"))
+  if (spec->control && spec->method == METHOD_RELAXATION)
     return node_error(run->reader->document, section_node(spec, "control"), error,
                       "control: dynamic relaxation cannot find factors of loads; leave 'method: relaxation' out");
   if (spec != run->spec) { /* that of the stage under way has its own already */

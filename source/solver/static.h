@@ -11,11 +11,14 @@
 #include <stdbool.h>
 #include <string.h>
 
+typedef enum StaticMethod { METHOD_NEWTON, METHOD_RELAXATION } StaticMethod;
+typedef enum NoEquilibrium { NO_EQUILIBRIUM_STOPS, NO_EQUILIBRIUM_GOES_ON } NoEquilibrium;
+
 typedef struct StaticSpec {
   SectionHead head;
   double end_time, smallest;
   int64_t increments, bonds_at_once, relaxation_iterations;
-  const char *method, *no_equilibrium;
+  int method, no_equilibrium; /* StaticMethod, NoEquilibrium */
   const ControlSpec *control;
   NewtonSpec newton;
 } StaticSpec;
@@ -23,7 +26,7 @@ typedef struct StaticSpec {
 /** Whether the next stage goes on where no equilibrium is found. */
 static inline bool static_hands_over(const StaticSpec *spec)
 {
-  return !strcmp(spec->no_equilibrium, "next stage");
+  return spec->no_equilibrium == NO_EQUILIBRIUM_GOES_ON;
 }
 
 /** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these

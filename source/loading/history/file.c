@@ -54,7 +54,8 @@ static const Section band_section = {.name = "band pass",
 
 typedef struct FileSpec {
   SectionHead head;
-  const char *name, *column, *times, *baseline;
+  const char *name, *column, *times;
+  int baseline; /* number of its word: degree of the polynomial + 1, 0 for none */
   double scale, step;
   int64_t channel;
   BandSpec *band;
@@ -151,9 +152,9 @@ static int check_steps(const Record *record, const FileSpec *spec, const char *k
 static int correct(Record *record, const FileSpec *spec, const DeckReader *reader)
 {
   double shortest, longest;
-  int status = BRECCIA_OK, degree = 0;
+  const int degree = spec->baseline;
+  int status = BRECCIA_OK;
   record_steps(record, &shortest, &longest);
-  while (strcmp(spec->baseline, baseline_word(degree)) != 0) ++degree;
   if (spec->step > longest * (1 + 1e-9))
     status = node_error(reader->document, section_node(spec, "time step"), reader->error,
                         "time step: %g would leave out values of the file, whose longest step is %g; take this or less",
@@ -167,7 +168,7 @@ static int correct(Record *record, const FileSpec *spec, const DeckReader *reade
   if (!status && degree && record->count < 2 * degree)
     status = node_error(reader->document, section_node(spec, "baseline correction"), reader->error,
                         "baseline correction: %d values are too few for a %s one; take 'none'", record->count,
-                        spec->baseline);
+                        baseline_word(degree));
   if (!status && degree) status = record_take_off(record, degree - 1, reader->error);
   if (!status && spec->band) status = check_steps(record, spec, "band pass", reader);
   if (!status && spec->band) {

@@ -18,12 +18,12 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
   const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
   const double area = load->spec->area;
   *face = (Face){0};
-  if ((!on || !on->face) && (isnan(area) || load->node->key[0] != 't'))
+  if ((!on || on->face < 0) && (isnan(area) || load->node->key[0] != 't'))
     return node_error(reader->document, load->node, reader->error,
                       "%s: acts on a face: 'on' must say which, like {face: x+}%s", load->node->key,
                       load->node->key[0] == 't' ? ", or 'area' how large it is" : "");
-  face->axis = on && on->face ? on->face[0] - 'x' : 0;
-  face->outwards = on && on->face && on->face[1] == '-' ? -1 : 1;
+  face->axis = on && on->face >= 0 ? selection_axis(on) : 0;
+  face->outwards = on && on->face >= 0 ? selection_side(on) : 1;
   face->per_depth = memory_zeroed((size_t)p->slices, sizeof(double), "face", reader->error);
   if (!face->per_depth) return BRECCIA_FAILURE;
   for (int64_t n = 0; n < load->selection.count; ++n) {

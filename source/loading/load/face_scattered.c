@@ -355,7 +355,7 @@ int face_spread_scattered(Face *face, Load *load, const LoadMaking *making, bool
                  .horizon = making->family->horizon,
                  .thickness = body->dimensions == 2 ? body_section(body) : 1};
   scattered_extents(&s, true, low, high);
-  if (!(on && on->face) && !scattered_find_normal(&s, low, high)) return BRECCIA_OK;
+  if (!(on && on->face >= 0) && !scattered_find_normal(&s, low, high)) return BRECCIA_OK;
   scattered_find_tangents(&s);
   if (!scattered_find_sides(&s, area)) return BRECCIA_OK;
   scattered_find_plane(&s, area);

@@ -192,14 +192,14 @@ static int spread_over_layers(Face *face, const Load *load, const LoadMaking *ma
 
 int face_spread(Face *face, Load *load, const LoadMaking *making)
 {
-  const char *told = load->spec->spread;
+  const bool told = load->spec->spread >= 0;
   const DeckReader *reader = making->reader;
   const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
-  const bool can = on && on->face && on->layers == 1 && isnan(load->spec->area) && making->family->first;
+  const bool can = on && on->face >= 0 && on->layers == 1 && isnan(load->spec->area) && making->family->first;
   bool done = false;
   const int failed = told ? BRECCIA_OK : face_spread_scattered(face, load, making, &done);
   if (failed || done) return failed;
-  if (told ? told[0] == 'l' : !can) return spread_over_layers(face, load, making);
+  if (told ? load->spec->spread == SPREAD_OVER_LAYERS : !can) return spread_over_layers(face, load, making);
   const int status = can ? spread_by_bonds(face, load, making, &done) : BRECCIA_OK;
   if (status || done || !told) return status;
   return node_error(

@@ -11,9 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { HELD_IN_ALL, HELD_ACROSS, HELD_PERIODIC };
+
 typedef struct SupportSpec {
   SectionHead head;
-  const char *held;
+  int held; /* number of its word */
   double displacement[3];
   int64_t layers;
 } SupportSpec;
@@ -26,7 +28,8 @@ static const Field support_fields[] = {
          "all: the face does not move; across: it slides along itself without friction, as in a plane of "
          "symmetry; periodic: it is not held, but the body goes on beyond it and the face opposite as it is, again "
          "and again: what leaves by one comes in by the other, of which nothing is said",
-     .words = (const char *const[]){"all", "across", "periodic", NULL}},
+     .words =
+         (const char *const[]){[HELD_IN_ALL] = "all", [HELD_ACROSS] = "across", [HELD_PERIODIC] = "periodic", NULL}},
     {.key = "displacement",
      .kind = FIELD_POINT,
      .offset = offsetof(SupportSpec, displacement),
@@ -57,7 +60,7 @@ typedef struct Support {
 static const SelectionSpec *face_of(const LoadSpec *spec, const SectionList *selections)
 {
   const SelectionSpec *on = selection_spec(selections, &spec->on);
-  const bool whole = on && on->face && !on->group && !on->inside && isnan(on->nearest[0]) && !on->any_of.count &&
+  const bool whole = on && on->face >= 0 && !on->group && !on->inside && isnan(on->nearest[0]) && !on->any_of.count &&
                      !on->all_of.count && !on->except.count && !on->outside;
   return whole ? on : NULL;
 }
@@ -71,7 +74,7 @@ static int find_block(const SelectionSpec *on, const SectionList *blocks)
 
 static bool is_periodic(const SupportSpec *spec)
 {
-  return !strcmp(spec->held, "periodic");
+  return spec->held == HELD_PERIODIC;
 }
 
 /** One layer outside a face after the other. */
@@ -101,19 +104,19 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
                       "support: takes the whole face of a block: 'on' must be like {%sface: x-}",
                       blocks->count > 1 ? "block: NAME, " : "");
   const BlockSpec *block = blocks->items[b];
-  if (block->file || !block->lattice || !lattice_is_grid(lattice_find(block->lattice)))
+  if (block->file || !lattice_is_grid(lattice_at(block->lattice)))
     return node_error(
         reader->document, node, reader->error,
         "support: the lattice of block '%s' is not its own mirror image; take 'square' or 'cubic', or hold "
         "layers by 'displacement'",
         block->head.name);
-  const int axis = on->face[0] - 'x';
+  const int axis = selection_axis(on);
   const double reach = horizon->in_spacings ? horizon->value : horizon->value / block->spacing;
   const bool periodic = is_periodic(support);
   Margin margin = {.owner = spec,
                    .block = b,
                    .axis = axis,
-                   .high = on->face[1] == '+',
+                   .high = selection_side(on) > 0,
                    .layers = support->layers > 0 ? support->layers : 2 * (int64_t)fmin(floor(reach + 1e-6), 500),
                    .repeats = periodic};
   const int status = add_one(list, &margin, node, reader);
@@ -138,7 +141,7 @@ int support_margins(MarginList *list, const SectionList *loads, const SectionLis
 bool support_slides(const Margin *margin)
 {
   const SupportSpec *support = ((const LoadSpec *)margin->owner)->of[LOAD_support].section;
-  return !strcmp(support->held, "across");
+  return support->held == HELD_ACROSS;
 }
 
 /** Whether a particle stands in a margin that this support asked for. */
@@ -199,7 +202,7 @@ static int create(Load *load, const LoadMaking *making)
   while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
   if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
   const int axis = body->margins.items[margin].axis;
-  if (body->particles.motions > ROTATION && !strcmp(spec->held, "all"))
+  if (body->particles.motions > ROTATION && spec->held == HELD_IN_ALL)
     return node_error(
         making->reader->document, load->node, error,
         "support: held in all directions its images are no mirror images, and what they do to particles that have "
@@ -216,7 +219,7 @@ static int create(Load *load, const LoadMaking *making)
         body->blocks[body->margins.items[margin].block]->head.name, "xyz"[axis],
         body -> margins.items[margin].high ? '+' : '-');
   for (int k = 0; k < body->dimensions; ++k) {
-    const bool periodic = is_periodic(spec), held = !periodic && (!strcmp(spec->held, "all") || k == axis);
+    const bool periodic = is_periodic(spec), held = !periodic && (spec->held == HELD_IN_ALL || k == axis);
     const double moved = isnan(spec->displacement[k]) ? 0 : spec->displacement[k];
     double direction[3] = {0};
     direction[k] = 1;

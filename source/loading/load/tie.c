@@ -9,8 +9,10 @@
 typedef struct TieSpec {
   SectionHead head;
   Reference to;
-  const char *directions;
+  int directions; /* number of its word */
 } TieSpec;
+
+static const char *const tie_directions[] = {"xyz", "x", "y", "z", "xy", "yz", "xz", NULL};
 
 static const Field tie_fields[] = {
     {.key = "to",
@@ -25,7 +27,7 @@ static const Field tie_fields[] = {
      .offset = offsetof(TieSpec, directions),
      .standard = "xyz",
      .meaning = "in which the motions are one; in the others they stay apart",
-     .words = (const char *const[]){"xyz", "x", "y", "z", "xy", "yz", "xz", NULL}},
+     .words = tie_directions},
 };
 
 const Section tie_load_section = {.name = "tie",
@@ -67,12 +69,12 @@ static int create(Load *load, const LoadMaking *making)
   if (!tie) return BRECCIA_FAILURE;
   bool any = false;
   for (int k = 0; k < 3; ++k) {
-    tie->along[k] = strchr(spec->directions, "xyz"[k]) && k < making->body->dimensions;
+    tie->along[k] = strchr(tie_directions[spec->directions], "xyz"[k]) && k < making->body->dimensions;
     any |= tie->along[k];
   }
   if (!any)
     return node_error(reader->document, section_node(spec, "directions"), reader->error,
-                      "directions: '%s' leads out of the body, which is %s", spec->directions,
+                      "directions: '%s' leads out of the body, which is %s", tie_directions[spec->directions],
                       making->body->dimensions == 2 ? "plane" : "a bar along x");
   tie->masters = memory_zeroed((size_t)load->selection.count, sizeof *tie->masters, "tie", reader->error);
   if (!tie->masters) return BRECCIA_FAILURE;

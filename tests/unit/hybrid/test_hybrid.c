@@ -621,7 +621,7 @@ static void a_torn_bar_spends_its_fracture_energy(void **state)
 {
   (void)state;
   if (under_sanitizers()) skip(); /* notched pairs and test_torn_bars walk the same code */
-  const BondLength of = {SPACE_PLANE_STRESS, influence_find("constant"), 0.015, 0.01};
+  const BondLength of = {SPACE_PLANE_STRESS, influence_at(INFLUENCE_CONSTANT), 0.015, 0.01};
   const double diagonal = sqrt(2);
   assert_near(hybrid_characteristic_length(&of), 0.01 * (3 + 2 * diagonal) / (2 + 2 * diagonal), 1e-12);
   breccia_model *m = model_of(

@@ -309,12 +309,12 @@ static void the_critical_stretch_spends_the_fracture_energy(void **state)
   const double known[] = {5. / 6, 4 * pi / 9, 5 * pi / 12}, ratio[] = {0.25, 1. / 3, 0.25};
   for (int k = 0; k < 3; ++k) {
     const Material like_bonds = {.bulk = 150 / (3 - 6 * ratio[k]), .shear = 150 / (2 + 2 * ratio[k])};
-    const BondLength of = {spaces[k], influence_find("inverse"), horizon, horizon / 3};
+    const BondLength of = {spaces[k], influence_at(INFLUENCE_INVERSE), horizon, horizon / 3};
     const double wanted = sqrt(known[k] * energy / (150 * horizon));
     assert_near(ordinary_critical_stretch(&of, &like_bonds, energy), wanted, 1e-4 * wanted);
 
     enum { REACH = 12 };
-    const BondLength constant = {spaces[k], influence_find("constant"), horizon, horizon / 3};
+    const BondLength constant = {spaces[k], influence_at(INFLUENCE_CONSTANT), horizon, horizon / 3};
     const Material other = {.bulk = 200, .shear = 60};
     const int depth = k ? 0 : REACH, d = k ? 2 : 3;
     const double limit = ordinary_critical_stretch(&constant, &other, energy);

@@ -123,7 +123,7 @@ static Problem pose(breccia_model *model, double mass_factor)
   return problem;
 }
 
-static void begin(Problem *p, const char *word)
+static void begin(Problem *p, int word)
 {
   assert_int_equal(linear_solver_create(&p->solver, word, NULL), 0);
   assert_int_equal(linear_solver_prepare(&p->solver, NULL), 0);
@@ -187,14 +187,14 @@ static void assert_same_answer(const Problem *p, double *const wanted[MOTIONS], 
 static void answers_are_those_of_a_dense_solution(void **state)
 {
   (void)state;
-  static const char *const ways[] = {"conjugate gradients", "minimal residuals", "direct"};
+  static const int ways[] = {LINEAR_gradients, LINEAR_residuals, LINEAR_direct};
   for (int c = 0; c < CASES; ++c)
     for (int way = 0; way < 3; ++way) {
       if (under_sanitizers() && (c + way) % 3) continue;
       Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way == 1 ? 3e3 : 0);
       char name[100];
       double *wanted[MOTIONS];
-      snprintf(name, sizeof name, "%s by %s", cases[c].name, ways[way]);
+      snprintf(name, sizeof name, "%s by %s", cases[c].name, linear_word(ways[way]));
       assert_true(vectors_make(wanted, p.domain->particles, "test", NULL));
       solve_densely(&p, wanted);
       begin(&p, ways[way]);
@@ -316,7 +316,7 @@ static void the_number_of_products_does_not_grow_with_the_body(void **state)
       const int n = of[c].n << twice;
       Problem p = pose(cube(of[c].formulation, of[c].material, n, ""), 0);
       load_far_face(&p, n);
-      begin(&p, "conjugate gradients");
+      begin(&p, LINEAR_gradients);
       const LinearRecord record = solve(&p, 1e-8);
       assert_true(record.residual <= 1e-8);
       products[twice] = record.iterations;
@@ -402,7 +402,7 @@ static void no_kind_of_body_takes_more_products_than_it_did(void **state)
         p.f[k][i] = k == 0 ? along * along : k == 1 ? 0.3 : -0.2 * along;
     }
     unknowns_gather(&p.solver.unknowns, p.f);
-    begin(&p, strstr(of[c].deck, "held: all") ? "minimal residuals" : "conjugate gradients");
+    begin(&p, strstr(of[c].deck, "held: all") ? LINEAR_residuals : LINEAR_gradients);
     const LinearRecord record = solve(&p, 1e-8);
     assert_true(record.residual <= 1e-8);
     if (llabs(record.iterations - of[c].products) > 2) {
@@ -418,7 +418,7 @@ static void no_kind_of_body_takes_more_products_than_it_did(void **state)
 static void answers_have_the_same_bits_for_any_number_of_threads(void **state)
 {
   (void)state;
-  static const char *const ways[] = {"conjugate gradients", "minimal residuals"};
+  static const int ways[] = {LINEAR_gradients, LINEAR_residuals};
   for (int way = 0; way < 2; ++way) {
     Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
     const size_t bytes = sizeof(double) * (size_t)p.domain->particles->places;
@@ -465,7 +465,7 @@ static void broken_bodies_are_solved(void **state)
   assert_int_equal(domain_linearise(d, NULL), 0);
   load_far_face(&p, 10);
   for (int k = 0; k < 3; ++k) p.f[k][lost] = 0;
-  begin(&p, "conjugate gradients");
+  begin(&p, LINEAR_gradients);
   const LinearRecord record = solve(&p, 1e-8);
   assert_true(record.residual <= 1e-8);
   assert_false(record.indefinite);
@@ -509,7 +509,7 @@ static void the_way_follows_the_stiffness(void **state)
   for (int c = 0; c < 2; ++c) {
     Problem p = pose(cube(of[c].formulation, of[c].material, 8, ""), 0);
     strain(&p, of[c].even, of[c].opening);
-    begin(&p, "conjugate gradients");
+    begin(&p, LINEAR_gradients);
     LinearRecord record = solve(&p, 1e-8);
     if (!record.unsuited) fail_msg("%s: conjugate gradients do not notice", of[c].name);
     assert_int_equal(record.indefinite, of[c].indefinite);
@@ -554,7 +554,7 @@ static void factors_are_the_last_resort(void **state)
   (void)state;
   Problem p = pose(plate(24), 0);
   p.solver.mass_factor = -2e5;
-  begin(&p, "minimal residuals");
+  begin(&p, LINEAR_residuals);
   LinearRecord record = solve(&p, 1e-8);
   print_message("minimal residuals: %lld products leave %g\n", (long long)record.iterations, record.residual);
   assert_true(record.residual > 0.01);
@@ -573,7 +573,7 @@ static void tedious_equations_go_to_factors(void **state)
   (void)state;
   Problem p = pose(plate(24), 0);
   p.solver.mass_factor = -3.75e4; /* of larger factors round-off decides whether they find the solution */
-  begin(&p, "automatic");
+  begin(&p, LINEAR_AUTOMATIC);
   LinearRecord record = solve(&p, 1e-8);
   print_message("minimal residuals: %lld products leave %g\n", (long long)record.iterations, record.residual);
   assert_string_equal(linear_solver_name(&p.solver), "minimal residuals");
@@ -591,7 +591,7 @@ static void factors_start_no_threads(void **state)
   (void)state;
   Problem p = pose(plate(40), 0);
   const int before = count_threads();
-  begin(&p, "direct");
+  begin(&p, LINEAR_direct);
   solve(&p, 1e-8);
   assert_int_equal(count_threads(), before);
   forget(&p);
@@ -614,7 +614,7 @@ static void memory_of_factors_is_foreseen(void **state)
                                     "0.1, %s}}\nloads: [" HOLD "]\n" END,
                               of[c].material, of[c].formulation, of[c].space, of[c].shape),
                      0);
-    assert_int_equal(linear_solver_create(&p.solver, "direct", NULL), 0);
+    assert_int_equal(linear_solver_create(&p.solver, LINEAR_direct, NULL), 0);
     const double told = linear_solver_foresee(&p.solver).bytes;
     assert_int_equal(linear_solver_prepare(&p.solver, NULL), 0);
     const double taken = (double)p.solver.type->bytes(&p.solver);
