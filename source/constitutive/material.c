@@ -495,6 +495,18 @@ bool material_is_as_stiff(const Material *one, const Material *other)
          fabs(one->shear - other->shear) <= rounding * fabs(one->shear);
 }
 
+bool material_is_unlimited(const Material *m)
+{
+  const breccia_law *law = m->law;
+  return !m->remote && !law->link && !isfinite(material_failure_strain(m)) && (law->linear || law->takes_time);
+}
+
+double material_share_of_bond(const Material *own, const Material *other)
+{
+  if (material_is_unlimited(own) == material_is_unlimited(other) || !material_is_as_stiff(own, other)) return 0.5;
+  return material_is_unlimited(own) ? 0 : 1;
+}
+
 bool material_has_tangent(const Material *m)
 {
   double none[6] = {0}, stress[6], tangent[36], *history = m->remote ? NULL : material_begin_twice(m);

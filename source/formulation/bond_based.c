@@ -182,6 +182,7 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
+  if (b->bonds && !(bond_share(b, slice, bond.neighbour / SLICE) > 0)) rows[0] = rows[1];
   const double lateral = bond_lateral(b, place, &bond);
   const double elastic =
       b->bonds ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0) : length - bond.length;

@@ -120,6 +120,15 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
 void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
                  double change[3]);
 
+/** Share of a bond between two slices that the law of the first one has. */
+static inline double bond_share(const BondBased *b, int64_t slice, int64_t other)
+{
+  const int32_t own = b->material[slice], there = b->material[other];
+  return own == there || is_foreign(b->foreign, other * SLICE)
+             ? 0.5
+             : material_share_of_bond(&b->materials[own], &b->materials[there]);
+}
+
 /** Share of the force of a bond that its own end gives: foreign ends give the other half themselves. */
 static inline double bond_own_share(const BondBased *b, const Bond *bond)
 {

@@ -114,7 +114,8 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
     return;
   }
   int64_t rows[2];
-  double tangent[2], own = b->per_stress[block[slice]] / 2, there = b->per_stress[block[other]] / 2;
+  const double share = bond_share(b, slice, other);
+  double tangent[2], own = share * b->per_stress[block[slice]], there = (1 - share) * b->per_stress[block[other]];
   bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double lateral = bond_lateral(b, place, bond),
                stress = points_try(b->points, rows[0], stretch, lateral, &tangent[0]);

@@ -142,7 +142,8 @@ LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, const 
     const double own = b->shown[BOND_SHOWN * (int64_t)here[n] + 7],
                  other = b->shown[BOND_SHOWN * (int64_t)there[n] + 7];
     const bool mixed = b->material[here[n] / SLICE] != b->material[there[n] / SLICE];
-    lever[n] = f->intact[slot] >> lane & 1 ? (mixed ? (second ? other : own) : own + other) : 0;
+    const double share = mixed ? 2 * bond_share(b, here[n] / SLICE, there[n] / SLICE) : 1;
+    lever[n] = f->intact[slot] >> lane & 1 ? (mixed ? (second ? (2 - share) * other : share * own) : own + other) : 0;
     if (f->scale) lever[n] *= f->scale[place];
     if (b->surface) lever[n] *= (double)b->surface[slot * SLICE + lane];
   }

@@ -353,14 +353,24 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   }
 }
 
-/** Reduces section and volume of a bond to the part of the material of a listed row in its laminate.
- *  @return false if that part is empty */
-static bool take_part(Hybrid *h, int64_t number, const HybridLaminate *laminate)
+/** Returns the part of the material of a listed row in its section and volume: in those of a laminate, or in those of
+ *  one of two halves. */
+static double part_of(const Hybrid *h, const HybridRow *at, int64_t number, const HybridLaminate *laminate)
 {
-  if (!laminate) return true;
-  h->volume[number] *= laminate->fraction;
-  for (int k = 0; k < 3; ++k) h->area[number][k] *= laminate->fraction;
-  return laminate->fraction > 0;
+  int64_t rows[2];
+  if (laminate) return laminate->fraction;
+  bond_list_rows(h->bonds, h->family, at->slice, at->slot, at->lane, rows);
+  const int64_t own = h->row[number], other = rows[rows[0] == own];
+  return other == own ? 1
+                      : 2 * material_share_of_bond(points_material(h->points, own), points_material(h->points, other));
+}
+
+/** Reduces section and volume of a bond to a part of them. @return false if that part is empty */
+static bool take_part(Hybrid *h, int64_t number, double part)
+{
+  h->volume[number] *= part;
+  for (int k = 0; k < 3; ++k) h->area[number][k] *= part;
+  return part > 0;
 }
 
 static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
@@ -376,7 +386,8 @@ static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
     hybrid_section_of(h, shape, &at, h->area[number], &h->volume[number]);
     if (hybrid_laminate_create(h, number, error)) return BRECCIA_FAILURE;
     HybridLaminate *laminate = laminate_of(h, number);
-    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number], laminate) && take_part(h, number, laminate))
+    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number], laminate) &&
+        take_part(h, number, part_of(h, &at, number, laminate)))
       continue;
     h->idle[number] = 1; /* also where influence ends at the horizon */
     const int64_t owner = at.slice * SLICE + at.lane;

@@ -439,6 +439,7 @@ void breccia_model_destroy(breccia_model **out)
   }
   free(model->compressions.stress);
   free(model->compressions.at);
+  text_free(&model->thin_layers);
   free(model->schedule);
   free(model->stops);
   free(model->own_laws);

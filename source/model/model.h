@@ -53,6 +53,7 @@ struct breccia_model {
   int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
   Compressions compressions;
+  Text thin_layers; /* last words of a run on layers that carry more than their strength */
   double run_seconds;
   int64_t run_steps;
   const volatile int *interrupted; /* of breccia_options */

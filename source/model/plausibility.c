@@ -618,6 +618,7 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_supports(model);
   plausibility_warn_of_bars(model);
   plausibility_warn_of_layers(model);
+  plausibility_warn_of_thin_layers(model);
   plausibility_warn_of_places(model);
   plausibility_warn_of_pictures(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);

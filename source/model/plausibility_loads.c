@@ -351,6 +351,7 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_sudden(model, &model->loading.loads[k]);
     check_sudden_strain(model, &model->loading.loads[k]);
     check_speed(model, &model->loading.loads[k]);
+    plausibility_warn_of_area(model, &model->loading.loads[k]);
   }
   check_twice(model);
   check_grips(model);

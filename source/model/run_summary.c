@@ -516,6 +516,7 @@ void run_tell_outcome(Run *run, int status)
   }
   if (!blown_up) run_tell_compressions(model, t);
   if (!blown_up) tell_control(d, e.stored, t);
+  if (!blown_up) run_tell_thin_layers(model, t);
   if (!blown_up) run_tell_strains(model, t);
   if (!blown_up) run_tell_bars(model, t);
   tell_verdicts(s, t);

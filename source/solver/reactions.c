@@ -34,14 +34,26 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
 /* ---- several supports that mirror ----
  *
  * Images of different supports exert forces on each other, which are nothing to the body: of each support counts what its images do to particles inside.
- * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where faces are held across. */
+ * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where faces are held across. Images in a
+ * corner of a held face and a periodic face belong to the held face along all axes: beyond a periodic face the support goes on as it is. */
 
-/** Which support's the image is along an axis: of those behind whose faces it stands the one of that axis, or else its own. */
+static const Margin *reactions_margin(const Body *body, int64_t n)
+{
+  return &body->margins.items[body->margin_of[n]];
+}
+
+/** Returns the support to which the force on an image counts along an axis. Of the faces behind which the image stands,
+ *  this is the one across that axis; a periodic face counts only if no other face is among them. */
 static const LoadSpec *support_along(const Body *body, int64_t n, int axis)
 {
-  for (int64_t m = n; body_outside(body, m); m = body->image_of[m])
-    if (body->margins.items[body->margin_of[m]].axis == axis) return body->margins.items[body->margin_of[m]].owner;
-  return body->margins.items[body->margin_of[n]].owner;
+  const Margin *own = reactions_margin(body, n);
+  for (int64_t m = n; own->repeats && body_outside(body, m); m = body->image_of[m])
+    if (!reactions_margin(body, m)->repeats) own = reactions_margin(body, m);
+  for (int64_t m = n; body_outside(body, m); m = body->image_of[m]) {
+    const Margin *margin = reactions_margin(body, m);
+    if (margin->axis == axis && margin->repeats == own->repeats) return margin->owner;
+  }
+  return own->owner;
 }
 
 /** Force on an image of the particles inside to which it has bonds. */

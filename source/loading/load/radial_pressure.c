@@ -1,12 +1,8 @@
-#include "loading/load/load_parts.h"
+#include "loading/load/radial_pressure.h"
 
 #include "base/team.h"
+#include "loading/load/load_parts.h"
 #include <math.h>
-
-typedef struct RadialPressureSpec {
-  SectionHead head;
-  double pressure, area, centre[3], axis[3];
-} RadialPressureSpec;
 
 static void check_radial_pressure(const DeckReader *reader, void *section)
 {
@@ -47,8 +43,8 @@ const Section radial_pressure_load_section = {.name = "radial pressure",
                                               FIELDS(radial_pressure_fields),
                                               .check = check_radial_pressure};
 
-/** From the axis to a place: unit vector across the axis. @return whether the place stands off the axis */
-static bool outwards(const RadialPressureSpec *s, const Particles *p, int32_t place, double n[3])
+bool radial_pressure_outwards(const RadialPressureSpec *s, const Particles *p, int32_t place, double n[3],
+                              double *distance)
 {
   const double along[3] = {isnan(s->axis[0]) ? 0 : s->axis[0], isnan(s->axis[1]) ? 0 : s->axis[1],
                            isnan(s->axis[2]) ? isnan(s->axis[0]) : s->axis[2]};
@@ -63,6 +59,7 @@ static bool outwards(const RadialPressureSpec *s, const Particles *p, int32_t pl
     length += n[k] * n[k];
   }
   length = sqrt(length);
+  *distance = length;
   for (int k = 0; k < 3; ++k) n[k] /= length;
   return length > 0;
 }
@@ -71,13 +68,13 @@ static int create(Load *load, const LoadMaking *making)
 {
   const RadialPressureSpec *s = load->value->section;
   const Particles *p = &making->body->particles;
-  double n[3];
+  double n[3], distance;
   if (making->body->dimensions == 1 ||
       (making->body->dimensions == 2 && !isnan(s->axis[0]) && (s->axis[0] != 0 || s->axis[1] != 0)))
     return node_error(making->reader->document, load->node, making->reader->error, "radial pressure: the body is %s",
                       making->body->dimensions == 1 ? "a bar along x" : "plane; leave out 'axis', it is z");
   for (int64_t k = 0; k < load->selection.count; ++k)
-    if (!outwards(s, p, load->selection.places[k], n))
+    if (!radial_pressure_outwards(s, p, load->selection.places[k], n, &distance))
       return node_error(making->reader->document, load->node, making->reader->error,
                         "radial pressure: a particle stands on the axis; select those next to the round surface");
   return BRECCIA_OK;
@@ -89,8 +86,8 @@ static void force(const Load *load, Particles *p, double factor)
   const double per_volume = factor * s->pressure * s->area / load->volume;
   TEAM_FOR (k, load->selection.count) {
     const int32_t place = load->selection.places[k];
-    double n[3];
-    outwards(s, p, place, n);
+    double n[3], distance;
+    radial_pressure_outwards(s, p, place, n, &distance);
     for (int c = 0; c < 3; ++c) p->external[c][place] += per_volume * n[c];
   }
 }

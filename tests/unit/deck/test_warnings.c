@@ -31,6 +31,11 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define SLIPS(strength, ribs)                                                                                          \
   "bars: {low: {points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: m, bond: {compressive "                  \
   "strength: " strength ", rib spacing: " ribs "}}}\n"
+#define TRACTION(on, area) "loads: [{on: {" on "}, area: " area ", traction: [0, 1], history: {ramp to: 1e-12}}]\n"
+#define UPPERMOST "inside: {box: {from: [0, 0.05], to: [0.08, 0.06]}}"
+#define ROUND(area)                                                                                                    \
+  "loads: [{on: {inside: {difference: [{sphere: {centre: [0, 0], radius: 0.035}}, {sphere: {centre: [0, 0], radius: "  \
+  "0.015}}]}}, radial pressure: {pressure: 1, area: " area ", centre: [0, 0]}, history: {ramp to: 1e-12}}]\n"
 #define DAMAGE "pictures: [{field: damage}]\n"
 #define HALF "loads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
@@ -151,6 +156,22 @@ static const struct {
     {"m", USUAL, BAR("0.02", "1.61e-3"), "area: bars take 0.101 of the volume of the body"},
     {"m", USUAL, BAR("0.025", "1e-4") HALF, NULL},
     {"m", USUAL, BAR("0.015", "1e-4") HALF, "points: bar 'low' comes to a face with 'support'"},
+    /* areas: a face of 0.008 m2, of one layer or two; of the whole body no face is known; a quarter of a round hole */
+    {"m", USUAL, TRACTION("face: y+", "0.0054"), NULL},
+    {"m", USUAL, TRACTION("face: y+", "0.0170"), NULL},
+    {"m", USUAL, TRACTION("face: y+, layers: 2", "0.0054"), NULL},
+    {"m", USUAL, TRACTION("face: y+", "0.0053"),
+     "area: 0.0053 m2, but the volumes of the particles on which the load acts make a face of 0.008 m2, 1.51 times "
+     "more"},
+    {"m", USUAL, TRACTION("face: y+", "0.08"), "make a face of 0.01143 m2, 7 times less"},
+    {"m", USUAL, TRACTION("face: y+, layers: 2", "0.0800"), "make a face of 0.016 m2, 5 times less"},
+    {"m", USUAL, TRACTION(UPPERMOST, "0.0054"), NULL},
+    {"m", USUAL, TRACTION(UPPERMOST, "8e-4"), "make a face of 0.008 m2, 10 times more"},
+    {"m", USUAL, TRACTION("all: yes", "0.07"), NULL},
+    {"m", USUAL, TRACTION("all: yes", "0.11"), "area: 0.11 m2"},
+    {"m", USUAL, ROUND("0.003"), NULL},
+    {"m", USUAL, ROUND("0.03"), "area: 0.03 m2, but the volumes of the particles on which the load acts"},
+    {"m", USUAL, ROUND("0.0003"), "area: 0.0003 m2, but the volumes of the particles on which the load acts"},
     {"m", USUAL, SLIPS("8.1 MPa", "1.1 mm"), NULL},
     {"m", USUAL, SLIPS("199 MPa", "49 mm"), NULL},
     {"m", USUAL, SLIPS("7.9 MPa", "8 mm"), "compressive strength: 7.9 MPa; concrete around bars has 8 MPa to 200 MPa"},

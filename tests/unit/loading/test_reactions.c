@@ -101,6 +101,36 @@ static void each_of_several_walls_carries_its_own(void **state)
 }
 
 /** What holds rotations exerts moments alone, in directions that move freely, too, where particles are not in balance. */
+/** One period of a layer carries what acts on one period: shear and weight, whatever stands in the corners beside the
+ *  periodic faces. */
+static void a_base_between_periodic_faces_carries_one_period(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"correspondence", "ordinary", "hybrid", "bond-based", "micropolar"};
+  static const char *const held[] = {"all", "across"};
+  for (int k = 0; k < 10; ++k) {
+    const int f = k / 2;
+    if (f == 4 && k % 2 == 0) continue; /* micropolar bodies are held across only */
+    breccia_model *model = model_of(
+        UNITS
+        "materials: {m: {model: %s, Young modulus: 2e5, density: 2%s}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, "
+        "6]}}}}\nperidynamics: {formulation: %s, space: plane stress, horizon: 3.015 spacings}\n"
+        "loads: [{name: base, on: {face: y-}, support: {held: %s}}, {on: {face: x-}, support: {held: "
+        "periodic}}, {gravity: [0, -9.81]}, {on: {face: y+, layers: 1}, traction: [%g, 0]}, {on: {nearest: [0.35, "
+        "0.05]}, displacement: [%s, free]}]\n"
+        "solve: {static: {increments: 1, residual: 1e-10}}\n",
+        f == 3 ? "elastic-1d" : "elastic", f == 3 ? "" : ", Poisson ratio: 0.25", formulations[f], held[k % 2],
+        k % 2 ? 0 : 0.7, k % 2 ? "0" : "free");
+    step_surely(model, INT64_MAX);
+    const double shear = k % 2 ? 0 : 0.7 * 0.8 * 0.2, weight = 2 * 9.81 * 0.8 * 0.6 * 0.2;
+    const Wrench base = sum_of(model, NULL, "base", NULL);
+    assert_near(base.force[0], -shear, 1e-7);
+    assert_near(base.force[1], weight, 1e-7);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void what_holds_a_rotation_exerts_a_moment_and_no_force(void **state)
 {
   (void)state;
@@ -281,6 +311,7 @@ int main(void)
       cmocka_unit_test(a_base_carries_the_weight_of_a_block),
       cmocka_unit_test(supports_outside_the_body_carry_it_too),
       cmocka_unit_test(each_of_several_walls_carries_its_own),
+      cmocka_unit_test(a_base_between_periodic_faces_carries_one_period),
       cmocka_unit_test(what_holds_a_rotation_exerts_a_moment_and_no_force),
       cmocka_unit_test(two_supports_share_the_load_of_a_beam),
       cmocka_unit_test(a_clamp_exerts_the_moment_of_the_load_about_its_face),

@@ -1,0 +1,197 @@
+/* Thin layers of materials that yield, soften or break, between blocks of materials that do not.
+ *
+ * A bond between two materials follows one of them, or half of each. Bonds of the blocks on both sides that reach across
+ * all gaps between the rows of a layer carry on when the layer has failed, so that its strength grows without a limit.
+ * The thickness of a layer is measured along the normal of the interface, from particles of one block to the next
+ * block of a material without a limit. The number of rows that a layer wants was measured (docs/choosing.md, layers of
+ * little strength). */
+#include "model/plausibility_parts.h"
+
+#include "base/memory.h"
+#include "model/run.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THIN_STEPS = 10 }; /* per spacing along the normal */
+
+/** Largest number of bridged rows of which a layer of one more row is right after the peak, too, in hybrid bonds. */
+static const int thin_few_rows = 2;
+
+/** A thin layer: the block of the layer, the blocks on both sides, rows of particles that it has and that it wants. */
+typedef struct ThinLayer {
+  int block, ends[2];
+  int rows, wanted;
+} ThinLayer;
+
+/** Returns true if nothing limits the stress of a place: neither its law nor a criterion of bonds. */
+static bool thin_is_unlimited(const Domain *d, int32_t material)
+{
+  return material_is_unlimited(&d->materials[material]) &&
+         !(d->failure.criterion && isfinite(d->failure.limit[material]));
+}
+
+static double thin_spacing(const Domain *d, int32_t place)
+{
+  return d->body.lattices[d->particles->block[place / SLICE]].spacing;
+}
+
+/** Returns the number of rows that a layer wants between blocks like that of a place.
+ *  @param[in] place, other  of the unlimited material and of the layer */
+static int thin_wanted(const Domain *d, int32_t place, int32_t other)
+{
+  const Region *region = domain_region(d, place);
+  const Material *own = &d->materials[d->material[place / SLICE]], *layer = &d->materials[d->material[other / SLICE]];
+  const int reach = (int)floor(d->family.horizon / thin_spacing(d, other) * (1 + 1e-9));
+  const bool one_region = domain_region(d, other) == region, links = !strcmp(region->type->name, "micropolar");
+  if (one_region && links) return reach; /* the law of either end damages all of a link */
+  const bool on_particles = !region->type->on_bonds && !links;
+  if (on_particles && !(layer->softening_energy > 0)) return 4 * reach; /* yielding spreads over all of the layer */
+  if (!one_region || !region->type->on_bonds || !(material_share_of_bond(layer, own) > 0.5)) return 2 * reach;
+  return region->type->laminates && reach > thin_few_rows ? reach + 1 : reach;
+}
+
+/** Returns the block at a point, or -1. */
+static int thin_block(const Body *body, const double point[3])
+{
+  for (int k = 0; k < body->block_count; ++k)
+    if (body->blocks[k]->shape &&
+        shape_contains(body->blocks[k]->shape, &body->lattices[k].unit, body->dimensions, point, 0))
+      return k;
+  return -1;
+}
+
+/** Material of each block, -1: it has no particle. */
+static int32_t *thin_materials(const Domain *d)
+{
+  int32_t *material = memory_plain((size_t)d->body.block_count, sizeof *material);
+  for (int k = 0; material && k < d->body.block_count; ++k) material[k] = -1;
+  for (int64_t s = 0; material && s < d->particles->slices; ++s) material[d->particles->block[s]] = d->material[s];
+  return material;
+}
+
+/** Finds the sum of the unit vectors to the nearest neighbours of limited materials, and one of these neighbours.
+ *  @return that neighbour, or -1 */
+static int32_t thin_normal(const Domain *d, int32_t place, double normal[3])
+{
+  const double near = 1.5; /* [spacings] */
+  const Family *f = &d->family;
+  const int64_t slice = place / SLICE;
+  int32_t found = -1;
+  for (int k = 0; k < 3; ++k) normal[k] = 0;
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, place % SLICE);
+    if (bond.length > near * d->body.lattices[d->particles->block[slice]].spacing ||
+        body_outside(&d->body, d->particles->number[bond.neighbour]) ||
+        thin_is_unlimited(d, d->material[bond.neighbour / SLICE]))
+      continue;
+    found = bond.neighbour;
+    for (int k = 0; k < 3; ++k) normal[k] += bond.xi[k] / bond.length;
+  }
+  const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  for (int k = 0; k < 3 && length > 0; ++k) normal[k] /= length;
+  return length > 0.5 ? found : -1;
+}
+
+/** Goes from a place along a normal through a layer that is thinner than the rows that it wants.
+ *  @param[in] spacing  of the particles of the layer
+ *  @param[in,out] layer  block of the layer, the block beyond and the rows between, if these are found
+ *  @return false: the layer is thicker, or ends at a free face */
+static bool thin_cross(const Domain *d, const int32_t *material, int32_t place, const double normal[3], double spacing,
+                       ThinLayer *layer)
+{
+  const Particles *p = d->particles;
+  const double step = spacing / THIN_STEPS, before = 2 * d->body.largest_spacing;
+  int inside = 0;
+  for (int n = 0; (n - layer->wanted * THIN_STEPS) * step < before; ++n) {
+    double point[3];
+    for (int k = 0; k < 3; ++k) point[k] = p->position[k][place] + n * step * normal[k];
+    const int block = thin_block(&d->body, point);
+    if (block < 0 || material[block] < 0) return false;
+    const bool limited = !thin_is_unlimited(d, material[block]);
+    if (limited && !inside++) layer->block = block;
+    if (limited || !inside) continue;
+    layer->ends[1] = block;
+    layer->rows = (inside + THIN_STEPS / 2) / THIN_STEPS;
+    return true;
+  }
+  return false;
+}
+
+/** Looks across the layer beside a place. @param[in,out] thin  [blocks] thinnest layers; 0 rows: none */
+static void thin_look(const Domain *d, const int32_t *material, int32_t place, ThinLayer *thin)
+{
+  double normal[3];
+  ThinLayer layer = {.ends = {d->particles->block[place / SLICE], 0}};
+  const int32_t other = thin_normal(d, place, normal);
+  if (other < 0) return;
+  layer.wanted = thin_wanted(d, place, other);
+  if (!thin_cross(d, material, place, normal, thin_spacing(d, other), &layer) || layer.rows >= layer.wanted) return;
+  ThinLayer *known = &thin[layer.block];
+  if (!known->rows || layer.rows < known->rows) *known = layer;
+}
+
+/** Finds the thin layers of a body. @return [blocks] layers, to be freed; 0 rows: none. NULL: memory is out */
+static ThinLayer *thin_find(const Domain *d)
+{
+  const Particles *p = d->particles;
+  const Family *f = &d->family;
+  ThinLayer *thin = memory_zeroed((size_t)d->body.block_count, sizeof *thin, "layers", NULL);
+  int32_t *material = thin_materials(d);
+  for (int64_t s = 0; thin && material && s < p->slices; ++s) {
+    if (f->stored[s] == f->first[s + 1] || !thin_is_unlimited(d, d->material[s])) continue;
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int32_t place = (int32_t)(s * SLICE + lane);
+      if (p->number[place] >= 0 && !body_outside(&d->body, p->number[place])) thin_look(d, material, place, thin);
+    }
+  }
+  free(material);
+  return thin;
+}
+
+static void thin_say(breccia_model *model, const ThinLayer *thin)
+{
+  const Body *body = &model->domain.body;
+  const char *name = body->blocks[thin->block]->head.name;
+  Text ends = {0};
+  if (thin->ends[0] == thin->ends[1])
+    text_add(&ends, "both sides of '%s'", body->blocks[thin->ends[0]]->head.name);
+  else
+    text_add(&ends, "blocks '%s' and '%s'", body->blocks[thin->ends[0]]->head.name,
+             body->blocks[thin->ends[1]]->head.name);
+  plausibility_say(model, body->blocks[thin->block]->head.node,
+                   "block '%s' is a layer of %d row%s between %s, which cannot fail, and %d rows are wanted: bonds of "
+                   "these blocks reach across it and carry on when it has failed, so that the layer bears more than "
+                   "its strength, without a limit; give it %d rows or more, or a shorter horizon (docs/choosing.md, "
+                   "layers of little strength)",
+                   name, thin->rows, thin->rows == 1 ? "" : "s", text_words(&ends), thin->wanted, thin->wanted);
+  text_add(
+      &model->thin_layers,
+      "warning: layer '%s' has %d row%s, and %d are wanted: its strength is OVERESTIMATED, by the more the farther "
+      "it is strained, as bonds between the blocks beside it do not fail\n",
+      name, thin->rows, thin->rows == 1 ? "" : "s", thin->wanted);
+  text_free(&ends);
+}
+
+void plausibility_warn_of_thin_layers(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  bool limited = false, unlimited = false;
+  for (int k = 0; k < d->material_count; ++k) {
+    const bool is = thin_is_unlimited(d, k);
+    unlimited |= is;
+    limited |= !is;
+  }
+  if (d->body.block_count < 2 || !limited || !unlimited) return;
+  ThinLayer *thin = thin_find(d);
+  for (int k = 0; thin && k < d->body.block_count; ++k)
+    if (thin[k].rows) thin_say(model, &thin[k]);
+  free(thin);
+}
+
+void run_tell_thin_layers(const breccia_model *model, Text *t)
+{
+  text_add(t, "%s", text_words(&model->thin_layers));
+}
