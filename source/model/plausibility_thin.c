@@ -1,7 +1,8 @@
 /* Thin layers of materials that yield, soften or break, between blocks of materials that do not.
  *
- * A bond between two materials follows one of them, or half of each. Bonds of the blocks on both sides that reach across
- * all gaps between the rows of a layer carry on when the layer has failed, so that its strength grows without a limit.
+ * A bond between two materials follows one of them, or half of each. Bonds of the blocks on both sides that reach
+ * across all gaps between the rows of a layer carry on when the layer has failed, so that its strength grows without a
+ * limit.
  * The thickness of a layer is measured along the normal of the interface, from particles of one block to the next
  * block of a material without a limit. The number of rows that a layer wants was measured (docs/choosing.md, layers of
  * little strength). */

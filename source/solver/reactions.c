@@ -34,8 +34,10 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
 /* ---- several supports that mirror ----
  *
  * Images of different supports exert forces on each other, which are nothing to the body: of each support counts what its images do to particles inside.
- * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where faces are held across. Images in a
- * corner of a held face and a periodic face belong to the held face along all axes: beyond a periodic face the support goes on as it is. */
+ * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where
+ * faces are held across.
+ * Images in a corner of a held face and a periodic face belong to the held face along all axes: beyond a periodic face
+ * the support goes on as it is. */
 
 static const Margin *reactions_margin(const Body *body, int64_t n)
 {

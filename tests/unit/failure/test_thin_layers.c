@@ -7,7 +7,7 @@
 #define LAYER_WIDTH 0.025
 #define BRITTLE ", tensile strength: 3e6, fracture energy: 100"
 
-/** A strip of three blocks, the middle one of some rows. @param[in] face  ratio of Young's modulus of the outer blocks */
+/** A strip of three blocks, the middle one of some rows. @param[in] ratio  of Young's modulus of the outer blocks */
 static breccia_model *strip_of(const char *elastic, const char *law, double ratio, int rows, const char *peridynamics,
                                double pull, const char *more)
 {
