@@ -5,6 +5,8 @@
  * Uniaxial curves over plastic strain x are those of Lee and Fenves: tension f_t exp(-b x), compression
  * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
+ * If the formulation gives lengths by crack normal (normal_lengths.h), each point spreads G_F over that length. The
+ * crushing energy has one length.
  *
  * The share r' is that of tension in the principal stresses, or the closing offset over the size of the elastic strain
  * if that is more: stress derives from a free energy, and closed cycles of strain make none (docs/theory.md 8.7,
@@ -100,6 +102,10 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->by_invariant = 1 / (9 * c->elastic.bulk * young);
   c->by_deviator = 1 / (3 * c->elastic.shear * young);
   c->recovers_by_share = v[RECOVERY_BY_SHARE] > 0;
+  c->peak_strain = strength / young;
+  c->opening = v[ENERGY] / strength;
+  c->initial_opening = isnan(v[INITIAL_ENERGY]) ? 0 : v[INITIAL_ENERGY] / strength;
+  c->lengths = (NormalLengths){0};
   c->tension = strength;
   c->tension_share = v[TENSION_DAMAGE];
   c->compression_share = v[COMPRESSION_DAMAGE];
@@ -148,7 +154,7 @@ static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
   static const char *const names[] = {"plastic strain in tension", "plastic strain in compression", "material damage",
-                                      ""};
+                                      "", ""};
   snprintf(name, size, "%s", k >= PLASTIC_IN_TENSION ? names[k - PLASTIC_IN_TENSION] : "");
 }
 
@@ -156,6 +162,11 @@ static int history_is_damage(const void *constants, int k)
 {
   (void)constants;
   return k == PLASTIC_DAMAGE;
+}
+
+void damage_plasticity_take_lengths(void *constants, const NormalLengths *lengths)
+{
+  ((DamagePlasticity *)constants)->lengths = *lengths;
 }
 
 static int update(const void *constants, const breccia_batch *batch)

@@ -2,6 +2,7 @@
 #ifndef BRECCIA_CONSTITUTIVE_DAMAGE_PLASTICITY_H
 #define BRECCIA_CONSTITUTIVE_DAMAGE_PLASTICITY_H
 
+#include "constitutive/normal_lengths.h"
 #include "constitutive/solid/solid_lanes.h"
 
 typedef struct DamagePlasticity {
@@ -13,18 +14,26 @@ typedef struct DamagePlasticity {
   double by_twice_shear, by_rounding, by_tension, by_rest_of_alpha; /* 1 / 2G, 1 / rounding, 1 / f_t, 1 / (1 - alpha) */
   double by_invariant, by_deviator; /* of squares of I1 and q in a^2: 1 / (9 K E), 1 / (3 G E) */
   bool recovers_by_share;           /* as published: no closing offset */
-  SolidUpdate *update;              /* for the vectors of this machine */
+  double opening, initial_opening;  /* G_F / f_t and G_f / f_t [length]; the latter 0 without a tail */
+  double peak_strain;               /* f_t / E */
+  NormalLengths lengths;
+  SolidUpdate *update; /* for the vectors of this machine */
 } DamagePlasticity;
 
 /* Plastic strain first. */
-/* The closing offset is the size of the elastic strain at which closed cracks begin to carry stress [strain]. */
+/* The closing offset is the size of the elastic strain at which closed cracks begin to carry stress [strain].
+ * PLASTIC_LENGTH is the length by the crack normal (normal_lengths.h). */
 enum {
   PLASTIC_IN_TENSION = 6,
   PLASTIC_IN_COMPRESSION,
   PLASTIC_DAMAGE,
   PLASTIC_CLOSING_OFFSET,
+  PLASTIC_LENGTH,
   DAMAGE_PLASTICITY_HISTORY
 };
+
+/** Sets the lengths by crack normal over which points spread the fracture energy. */
+void damage_plasticity_take_lengths(void *constants, const NormalLengths *lengths);
 
 LANES_CHOICE(SolidUpdate, damage_plasticity_update)
 

@@ -33,20 +33,57 @@ LANES_INLINE Trial trial_of(DualSlopes n, const Lanes principal[3])
   return t;
 }
 
-/** The curve of tension over plastic strain, to a power: c^share. @param[in] tail  whether it has one: a constant */
-LANES_INLINE Dual remaining(DualSlopes n, const DamagePlasticity *c, bool tail, Dual plastic, double share)
+/** Tension curves of points: b, and k - 1 with a tail. */
+typedef struct TensionCurves {
+  Lanes rate, steeper;
+} TensionCurves;
+
+/** Returns the tension curves of points that spread the fracture energy over a length; 0: over the length of the law.
+ *  A length for which the curve would snap back gives a curve that falls over a hundredth of the peak strain.
+ *  @param[in] length  of points [length] */
+LANES_INLINE TensionCurves tension_curves_over(const DamagePlasticity *c, Lanes length)
 {
-  Dual power = dual_scale(n, -c->tension_rate * share, plastic);
+  const double m = c->tension_share, steepest = (1 - m + 0.01) * c->peak_strain, t = c->tail;
+  TensionCurves curves = {lanes_set(c->tension_rate), lanes_set(c->steeper)};
+  const LaneMask known = length > lanes_set(0);
+  if (!c->lengths.across || !lanes_any(known)) return curves;
+  const Lanes one = lanes_set(1), over = one / lanes_choose(known, length, one),
+              area = lanes_greatest(lanes_product(lanes_set(c->opening), over) -
+                                        lanes_set(c->peak_strain * m / (2 * (2 - m))),
+                                    lanes_set(steepest));
+  Lanes sum = one; /* t + (1 - t) / k */
+  if (t < 1) {
+    const Lanes first = lanes_greatest(lanes_product(lanes_set(2 * c->initial_opening), over) -
+                                           lanes_set(c->peak_strain * m),
+                                       lanes_set(steepest)),
+                half = lanes_greatest((area / first - lanes_set(t * t + (1 - t) * (1 - t))) *
+                                          lanes_set(0.5 / (t * (1 - t))),
+                                      one), /* (k + 1 / k) / 2 */
+        k = half + lanes_root(lanes_product(half, half) - one);
+    sum = lanes_set(t) + lanes_set(1 - t) / k;
+    curves.steeper = lanes_choose(known, k - one, curves.steeper);
+  }
+  curves.rate = lanes_choose(known, sum / area, curves.rate);
+  return curves;
+}
+
+/** The curve of tension over plastic strain, to a power: c^share. @param[in] tail  whether it has one: a constant */
+LANES_INLINE Dual remaining(DualSlopes n, const DamagePlasticity *c, const TensionCurves *curves, bool tail,
+                            Dual plastic, double share)
+{
+  const Lanes slow = lanes_product(-curves->rate, lanes_set(share));
+  Dual power = dual_of(n, lanes_product(slow, plastic.value), slow, plastic);
   if (tail) {
-    const Dual quick = dual_exponential(n, dual_scale(n, -c->tension_rate * c->steeper, plastic)),
+    const Lanes fast = lanes_product(-curves->rate, curves->steeper);
+    const Dual quick = dual_exponential(n, dual_of(n, lanes_product(fast, plastic.value), fast, plastic)),
                both = dual_shift(dual_scale(n, 1 - c->tail, quick), c->tail);
     power = dual_sum(n, power, share, dual_logarithm(n, both));
   }
   return dual_exponential(n, power);
 }
 
-LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, const Trial *t, Lanes left,
-                          const Lanes *committed)
+LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, const TensionCurves *curves, bool tail,
+                          const Trial *t, Lanes left, const Lanes *committed)
 {
   Flow f;
   const Lanes zero = lanes_set(0), one = lanes_set(1);
@@ -81,7 +118,7 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   f.compression.value += committed[PLASTIC_IN_COMPRESSION];
   const double b = c->compression_rate, m = c->compression_share;
   /* One over the strength in tension; a crack cannot carry, but divides. */
-  Dual weakness = dual_scale(n, c->by_tension, remaining(n, c, tail, f.tension, c->tension_share - 1));
+  Dual weakness = dual_scale(n, c->by_tension, remaining(n, c, curves, tail, f.tension, c->tension_share - 1));
   weakness = dual_smaller(n, weakness, dual_constant(lanes_set(1e9 * c->by_tension)));
   const Dual rise = dual_exponential(n, dual_scale(n, -b * (1 - m), f.compression)),
              fall = dual_exponential(n, dual_scale(n, -b * (2 - m), f.compression));
@@ -96,10 +133,10 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
 }
 
 /** 1 - D of a state. */
-LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, Dual tension, Dual compression,
-                            Dual share)
+LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, const TensionCurves *curves, bool tail,
+                            Dual tension, Dual compression, Dual share)
 {
-  const Dual pulled = remaining(n, c, tail, tension, c->tension_share),
+  const Dual pulled = remaining(n, c, curves, tail, tension, c->tension_share),
              pressed = dual_exponential(n, dual_scale(n, -c->compression_rate * c->compression_share, compression));
   return dual_product(n, pressed, dual_rest(n, dual_product(n, share, dual_rest(n, pulled))));
 }
@@ -134,7 +171,8 @@ typedef struct Search {
   Lanes left_before, gap_before, inverse_before; /* share, F and 1 / slope the time before */
   Lanes rest, found[FOUND];                      /* what the last step adds; what it leads to */
   LaneMask flows, ended, bracketed;
-  SpectrumApart apart; /* of the elastic trial strain, for tangents */
+  SpectrumApart apart; /* of the elastic trial strain, for tangents and crack normals */
+  TensionCurves curves;
 } Search;
 
 LANES_INLINE Trial searched_trial(const Search *s)
@@ -155,7 +193,8 @@ LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, S
   const Lanes volume = lanes_product(lanes_set(lambda), lanes_trace(elastic));
   const SpectrumApart apart = spectrum_apart(elastic);
   spectrum_values(&apart, value);
-  if (tangents) s->apart = apart;
+  if (tangents || c->lengths.across) s->apart = apart;
+  s->curves = tension_curves_over(c, p->committed[PLASTIC_LENGTH]);
   for (int k = 0; k < 3; ++k) s->principal[k] = volume + lanes_set(twice) * value[k];
   const Trial t = trial_of(none, s->principal);
   s->sum = t.sum.value;
@@ -179,7 +218,7 @@ LANES_INLINE bool search_on(const DamagePlasticity *c, bool tail, Search *s, con
   const DualSlopes to_left = {LEFT, LEFT + 1};
   const Lanes zero = lanes_set(0), one = lanes_set(1), half = lanes_set(0.5), left = s->left;
   const Trial t = searched_trial(s);
-  const Flow flow = flow_by(to_left, c, tail, &t, left, committed);
+  const Flow flow = flow_by(to_left, c, &s->curves, tail, &t, left, committed);
   const Lanes gap = flow.excess.value, slope = flow.excess.slope[LEFT];
   const LaneMask first = s->gap_before == lanes_set(INFINITY);
   s->flows |= first & (gap > lanes_set(1e-12 * c->compression));
@@ -262,6 +301,8 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   plastic_strain_lanes(&c->elastic, p->strain, effective, plastic);
   for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
   p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
+  p->trial[PLASTIC_LENGTH] = normal_lengths_choose(&c->lengths, &s->apart, s->found[FOUND_TENSION] > lanes_set(0),
+                                                   p->committed[PLASTIC_LENGTH]);
   p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
   Dual size;
   const Dual share =
@@ -269,7 +310,7 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
                     dual_constant(s->found[FOUND_SHARE]), p->committed, &size);
   p->trial[PLASTIC_CLOSING_OFFSET] =
       lanes_where(s->found[FOUND_TENSION] > lanes_set(0), lanes_product(share.value, size.value));
-  const Dual whole = wholeness(none, c, tail, dual_constant(s->found[FOUND_TENSION]),
+  const Dual whole = wholeness(none, c, &s->curves, tail, dual_constant(s->found[FOUND_TENSION]),
                                dual_constant(s->found[FOUND_COMPRESSION]), share);
   p->trial[PLASTIC_DAMAGE] = lanes_set(1) - whole.value;
   for (int k = 0; k < 6; ++k) p->stress[k] = lanes_product(whole.value, effective[k]) + (left - left);
@@ -280,11 +321,11 @@ LANES_INLINE void find_tangents(const DamagePlasticity *c, const Search *s, Soli
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const DualSlopes every = {0, LEFT + 1};
   const Trial varied = trial_of(every, s->principal);
-  const Flow flow = flow_by(every, c, tail, &varied, s->left, p->committed);
+  const Flow flow = flow_by(every, c, &s->curves, tail, &varied, s->left, p->committed);
   Dual size;
   const Dual share = counted_share(every, c, flow.sum, dual_times_variable(every, varied.q, s->left, LEFT), flow.share,
                                    p->committed, &size);
-  const Dual whole = wholeness(every, c, tail, flow.tension, flow.compression, share);
+  const Dual whole = wholeness(every, c, &s->curves, tail, flow.tension, flow.compression, share);
   const Spectrum strain = spectrum_with_vectors(&s->apart);
   Lanes value[3], slopes[9], tangent[36];
   const Lanes by_flow =

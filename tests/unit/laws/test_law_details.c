@@ -4,6 +4,7 @@
 
 #include "base/tensor.h"
 #include "constitutive/driver.h"
+#include "constitutive/normal_lengths.h"
 #include "points/points.h"
 
 static const bool lateral[6] = {false, true, true};
@@ -61,6 +62,44 @@ static void keep_dilatancy(void *context, const Driver *d)
 {
   const double *plastic = d->committed;
   *(double *)context = (plastic[0] + plastic[1] + plastic[2]) / plastic[0];
+}
+
+static double length_of_context(const void *context, const double normal[3])
+{
+  assert_near(fabs(normal[0]), 1, 1e-9);
+  return *(const double *)context;
+}
+
+static void points_spread_the_fracture_energy_over_the_length_of_their_first_strain(void **state)
+{
+  (void)state;
+  /* Of a point whose damage has just begun the curve is that of a law with the length: 0.05 m, in place of 0.03 m. */
+  static const char *const laws[] = {"mazars", "damage-plasticity", "damage-plasticity"};
+  const double length = 0.05, peak = 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    const bool tail = k == 2;
+    double stress[3][6];
+    for (int turn = 0; turn < 3; ++turn) { /* the length of the law, that of the direction, the same as a parameter */
+      const char *over = turn == 2 ? "length=0.05" : "length=0.03",
+                 *initial = tail ? "initial fracture energy=0.04" : NULL;
+      Material m = k ? material_of(laws[k], "Young modulus=30e6", "Poisson ratio=0", "tensile strength=3000",
+                                   "fracture energy=0.1", "compressive strength=34000", over, initial, NULL)
+                     : material_of(laws[k], "Young modulus=30e6", "Poisson ratio=0", "tensile strength=3000",
+                                   "fracture energy=0.1", over, NULL);
+      if (turn == 1) assert_true(normal_lengths_give(&m, &(NormalLengths){length_of_context, &length}));
+      Point p = point_start(&m);
+      double strain[6] = {0};
+      for (int n = 0; n < 400; ++n) {
+        strain[0] = peak * (1 + 1e-6 + 0.02 * n);
+        point_try(&p, strain, stress[turn], NULL, 0);
+        point_commit(&p);
+      }
+      point_stop(&p);
+      material_destroy(&m);
+    }
+    assert_true(stress[0][0] > 1.1 * stress[2][0]);
+    assert_near(stress[1][0], stress[2][0], 1e-4 * stress[2][0]);
+  }
 }
 
 static void dilation_that_is_not_given_is_what_the_manual_says(void **state)
@@ -508,6 +547,7 @@ int main(void)
       cmocka_unit_test(damage_of_mazars_never_heals),
       cmocka_unit_test(compression_of_mazars_mends_nothing),
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
+      cmocka_unit_test(points_spread_the_fracture_energy_over_the_length_of_their_first_strain),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
       cmocka_unit_test(clay_that_was_loaded_elastically_forgets_what_came_before),
