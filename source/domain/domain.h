@@ -116,7 +116,7 @@ typedef struct Domain {
   Family family;
   Material *materials;
   int material_count;
-  struct MaterialLengths *lengths; /* [material_count] for points on bonds (domain_lengths.c); NULL: none */
+  struct MaterialLengths *lengths; /* [material_count] (domain_lengths.c); NULL: none */
   int32_t *material;               /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];

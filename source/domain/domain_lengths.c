@@ -1,6 +1,8 @@
-/* Characteristic lengths of points on lattice bonds as a function of the crack normal (constitutive/normal_lengths.h).
- * The length of a material is the mean over its lattice blocks of the lengths that FormulationType.crack_length
- * finds. */
+/* Lengths over which points spread a fracture energy where the length depends on more than the formulation
+ * (constitutive/normal_lengths.h).
+ * - Points on lattice bonds: on the crack normal. The length of a material is the mean over its lattice blocks of the
+ *   lengths that FormulationType.crack_length finds.
+ * - Points on particles: on the brittleness of the material, by FormulationType.softening_length. */
 #include "base/memory.h"
 #include "constitutive/normal_lengths.h"
 #include "domain/regions.h"
@@ -11,6 +13,7 @@
 struct MaterialLengths {
   const Domain *domain;
   int material;
+  double fixed; /* length for all normals; 0: by the lattice */
 };
 
 static double lengths_across(const void *context, const double normal[3])
@@ -19,6 +22,7 @@ static double lengths_across(const void *context, const double normal[3])
   const Domain *d = l->domain;
   double sum = 0;
   int blocks = 0;
+  if (l->fixed > 0) return l->fixed;
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     for (int b = 0; b < d->body.block_count && region->points.on_bonds; ++b) {
@@ -33,23 +37,35 @@ static double lengths_across(const void *context, const double normal[3])
   return blocks ? sum / blocks : 0;
 }
 
-/** Returns true if a region has points on bonds with six strain components, and its formulation finds lengths. */
+/** Returns true if a region has points with six strain components, and its formulation finds lengths for them. */
 static bool lengths_are_known(const Region *region)
 {
-  return region->points.on_bonds && region->points.components == 6 && region->type->crack_length;
+  if (region->points.components != 6) return false;
+  return region->points.on_bonds ? region->type->crack_length != NULL : region->type->softening_length != NULL;
 }
 
-int domain_find_lengths(Domain *d, Error *error)
+/** Returns the length of a material with points on particles by its brittleness; 0: lengths follow from lattices. */
+static double lengths_of_particles(const Domain *d, const Material *m, Space space)
+{
+  const Region *region = &d->regions[0];
+  if (region->points.on_bonds) return 0;
+  return region->type->softening_length(space, d->family.horizon, m->fracture_energy / (2 * m->softening_energy));
+}
+
+int domain_find_lengths(Domain *d, Space space, Error *error)
 {
   bool known = d->region_count > 0;
-  for (int r = 0; r < d->region_count; ++r) known &= lengths_are_known(&d->regions[r]);
+  for (int r = 0; r < d->region_count; ++r)
+    known &= lengths_are_known(&d->regions[r]) && d->regions[r].points.on_bonds == d->regions[0].points.on_bonds &&
+             (d->regions[r].points.on_bonds || d->regions[r].type == d->regions[0].type);
   if (!known) return BRECCIA_OK;
   d->lengths = memory_zeroed((size_t)d->material_count, sizeof *d->lengths, "lengths of cracks", error);
   if (!d->lengths) return BRECCIA_FAILURE;
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
-    d->lengths[k] = (struct MaterialLengths){d, k};
-    if (!(m->fracture_energy > 0) || m->length_given) continue;
+    if (!(m->fracture_energy > 0) || m->length_given || !(m->softening_energy > 0)) continue;
+    d->lengths[k] = (struct MaterialLengths){d, k, lengths_of_particles(d, m, space)};
+    if (d->lengths[k].fixed == m->length) continue;
     normal_lengths_give(m, &(NormalLengths){lengths_across, &d->lengths[k]});
   }
   return BRECCIA_OK;

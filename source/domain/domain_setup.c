@@ -388,7 +388,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     if (tell_at(reader, region->name ? region->node : section_node(pd, "formulation"), status, &told)) return status;
   }
   fill_rotary(d);
-  if (domain_find_lengths(d, error)) return BRECCIA_FAILURE;
+  if (domain_find_lengths(d, of.space, error)) return BRECCIA_FAILURE;
   if ((status = tensile_strength_set(d, reader, spec->materials))) return status;
   status = create_failure(d, reader, spec->failure, &of);
   for (int r = 0; r < d->region_count && !status; ++r) status = window_create(d, &d->regions[r], error);

@@ -28,9 +28,9 @@ int domain_create_materials(Domain *domain, const DeckReader *reader, const Doma
 int region_create_points(Domain *domain, Region *region, Space space, bool may_give_up, const BondLength *of,
                          Error *error);
 
-/** Sets the lengths by crack normal (domain_lengths.c) in the laws of points on bonds, if all regions have such points
- *  and formulations with lengths. A length in the deck takes precedence. Called after formulations are created. */
-int domain_find_lengths(Domain *domain, Error *error);
+/** Sets the lengths of points (domain_lengths.c) in laws that take lengths by crack normal, if the formulations of all
+ *  regions find such lengths. A length in the deck takes precedence. Called after formulations are created. */
+int domain_find_lengths(Domain *domain, Space space, Error *error);
 
 /** Windows for a region whose bonds do not break, where they take less than half of what sums of all slices do. Its formulation is made. */
 int window_create(Domain *domain, Region *region, Error *error);

@@ -75,6 +75,7 @@ const FormulationType formulation_correspondence = {
     .gradient = correspondence_gradient,
     .takes_small_strain = correspondence_takes_small_strain,
     .characteristic_length = correspondence_characteristic_length,
+    .softening_length = correspondence_softening_length,
     .former_bonds = correspondence_former_bonds,
     .scratch = correspondence_scratch,
     .give_way = correspondence_give_way,

@@ -176,5 +176,7 @@ void correspondence_axial_spring(const Correspondence *c, double *const u[3], in
 /** Width of the band of particles whose families a plane crack divides, and that follow their law to its end as it opens: nearly all within a horizon
  *  in the plane, less in space, where the farthest are hardly strained (docs/theory.md 8.7). */
 double correspondence_characteristic_length(const BondLength *of);
+/** Implements FormulationType.softening_length. */
+double correspondence_softening_length(Space space, double horizon, double ductility);
 
 #endif

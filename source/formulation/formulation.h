@@ -257,6 +257,10 @@ struct FormulationType {
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
+  /** Length over which points of a law that softens must spread G_F, so that running cracks take G_F [length]. NULL:
+   *  the characteristic length, whatever the law.
+   *  @param[in] ductility  l = E G_F / f_t^2 [length] */
+  double (*softening_length)(Space space, double horizon, double ductility);
   /** Length l over which a plane crack with that normal spreads a fracture energy in the lattice of a block: if all
    * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.
    *  @return NaN for particles that stand in no lattice */

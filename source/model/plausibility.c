@@ -1,5 +1,6 @@
 #include "model/plausibility_parts.h"
 
+#include "constitutive/normal_lengths.h"
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
 #include "formulation/correspondence.h"
@@ -165,11 +166,14 @@ static void check_bond_strength(breccia_model *model, const Material *m)
 }
 
 /** Warns where the zone in which a crack softens is too short for correspondence. Measured with 'mazars' in the notched
- *  strip of bench/toughness.py, plane stress, horizons of 3.015 spacings: cracks spend 1.3, 1.12 and 0.95 of G_F where
- *  E G_F / f_t^2 is 1.4, 2.5 and 5.5 horizons. */
+ *  strip of bench/toughness.py, plane stress, horizons of 3.015 spacings. With the length by brittleness
+ *  (FormulationType.softening_length) cracks take G_F down to l = E G_F / f_t^2 of 1.63 horizons, and 1.2 G_F at 1.4.
+ *  With the length of the formulation they take 1.34, 1.19, 1.08 and 0.95 G_F at 1.4, 2, 2.8 and 5.5 horizons. */
 static void check_brittleness(breccia_model *model, const Material *m, const Region *region)
 {
-  const double least = 2, enough = 3; /* E G_F / f_t^2 over the horizon */
+  const Space space = peridynamics_space(model->spec->peridynamics);
+  const bool by_brittleness = space != SPACE_3D && model->domain.lengths && normal_lengths_give(m, NULL);
+  const double least = by_brittleness ? 1.63 : 2, enough = by_brittleness ? 1.65 : 3; /* l over the horizon */
   const double strength = plausibility_parameter(model, m, "tensile strength"), young = material_young(m);
   if (!region || strcmp(region->type->name, "correspondence") != 0 || !(m->softening_energy > 0) ||
       !(strength <= young / 20) || !(m->fracture_energy > 0))
@@ -179,11 +183,13 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
   if (!(ratio < least)) return;
   char unit[64];
   units_name(model->units, dimension_find("length"), unit, sizeof unit);
-  plausibility_say(
-      model, section_node(plausibility_spec(model, m), "fracture energy"),
-      "fracture energy: E G_F / f_t^2 of material '%s' is %.2g horizons, so that cracks spend more than G_F (1.3 of it "
-      "at 1.4 horizons, 1.1 at 2.5); take a horizon of %.2g %s, which is a spacing of %.2g %s, or less",
-      m->name, ratio, horizon * ratio / enough, unit, model->domain.body.largest_spacing * ratio / enough, unit);
+  plausibility_say(model, section_node(plausibility_spec(model, m), "fracture energy"),
+                   "fracture energy: E G_F / f_t^2 of material '%s' is %.2g horizons, so that cracks take more than "
+                   "G_F (%s); take a "
+                   "horizon of %.2g %s, which is a spacing of %.2g %s, or less",
+                   m->name, ratio,
+                   by_brittleness ? "1.2 of it at 1.4 horizons" : "1.3 of it at 1.4 horizons, 1.1 at 2.8",
+                   horizon * ratio / enough, unit, model->domain.body.largest_spacing * ratio / enough, unit);
 }
 
 static void check_material(breccia_model *model, int k)

@@ -109,12 +109,11 @@ static const struct {
     {"m", USUAL, BOUND("1010"), "; did you mean '1010 N/m'? In m, kN, s that is 1.01"},
     {"m", USUAL, BOUND("0.05 N/m"), "; did you mean '0.05 N/mm'? In m, kN, s that is 0.05"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "41 N/m"), "", NULL},
-    /* E G_F / f_t^2 beside the horizon of 30.15 mm: 2.01 and 1.98 of it */
-    {"m", STRONG("2.4", "30 GPa", "7.03 MPa", "100 N/m"), "", NULL},
-    {"m", STRONG("2.4", "30 GPa", "7.09 MPa", "100 N/m"), "",
-     "E G_F / f_t^2 of material 'm' is 2 horizons, so that cracks spend more than G_F (1.3 of it at 1.4 horizons, 1.1 "
-     "at "
-     "2.5); take a horizon of 0.02 m, which is a spacing of 0.0066 m, or less"},
+    /* E G_F / f_t^2 beside the horizon of 30.15 mm: 1.64 and 1.61 of it */
+    {"m", STRONG("2.4", "30 GPa", "7.79 MPa", "100 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "7.86 MPa", "100 N/m"), "",
+     "E G_F / f_t^2 of material 'm' is 1.6 horizons, so that cracks take more than G_F (1.2 of it at 1.4 horizons); "
+     "take a horizon of 0.029 m, which is a spacing of 0.0098 m, or less"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "399 N/m"), "", NULL},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "401 N/m"), "", "fracture energy: 401 N/m " MUCH},

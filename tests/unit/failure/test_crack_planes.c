@@ -4,6 +4,8 @@
 #include "support.h"
 
 #include "base/random.h"
+#include "constitutive/solid/mazars.h"
+#include "formulation/correspondence.h"
 #include "formulation/ordinary.h"
 
 static const char *const lattices[] = {"square", "hexagonal", "cubic", "face-centred cubic"};
@@ -358,6 +360,30 @@ static void cracks_through_softening_points_take_the_fracture_energy_along_diago
   }
 }
 
+static void points_of_correspondence_spread_the_fracture_energy_by_the_brittleness_of_their_law(void **state)
+{
+  (void)state;
+  /* The band is two horizons wide in the plane; a law cannot spread G_F over more than 2 l. */
+  assert_near(correspondence_softening_length(SPACE_PLANE_STRESS, 0.03, 0.15), 0.06, 1e-12);
+  assert_near(correspondence_softening_length(SPACE_PLANE_STRESS, 0.03, 0.06), 0.06 * (0.89 + 0.45), 1e-12);
+  assert_near(correspondence_softening_length(SPACE_PLANE_STRAIN, 0.03, 0.04), 1.94 * 0.04, 1e-12);
+  assert_near(correspondence_softening_length(SPACE_3D, 0.03, 0.04), 1.75 * 0.03, 1e-12);
+  for (int k = 0; k < 3; ++k) { /* l is 0.6 m and 2 m, and the horizon 0.3 m; the third deck has a length of its own */
+    breccia_model *m = body_of_lattice(
+        "square", "formulation: correspondence, horizon: 0.3",
+        k == 0 ? "model: mazars, Poisson ratio: 0.2, tensile strength: 31.6227766, fracture energy: 0.06"
+        : k == 1
+            ? "model: mazars, Poisson ratio: 0.2, tensile strength: 31.6227766, fracture energy: 0.2"
+            : "model: mazars, Poisson ratio: 0.2, tensile strength: 31.6227766, fracture energy: 0.06, length: 0.6",
+        "");
+    const Mazars *law = m->domain.materials[0].constants;
+    const double normal[3] = {1, 0, 0};
+    assert_int_equal(law->lengths.across != NULL, k == 0);
+    if (!k) assert_near(law->lengths.across(law->lengths.context, normal), 0.6 * (0.89 + 0.45), 1e-9);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void broken_bonds_take_what_check_tells(void **state)
 {
   (void)state;
@@ -382,6 +408,7 @@ int main(void)
       cmocka_unit_test(a_torn_body_spends_what_its_plane_cuts),
       cmocka_unit_test(hybrid_bonds_break_at_the_energy_that_goes_with_them),
       cmocka_unit_test(cracks_through_softening_points_take_the_fracture_energy_along_diagonals_too),
+      cmocka_unit_test(points_of_correspondence_spread_the_fracture_energy_by_the_brittleness_of_their_law),
       cmocka_unit_test(broken_bonds_take_what_check_tells),
       cmocka_unit_test(check_tells_the_band_over_all_directions),
   };
