@@ -369,7 +369,8 @@ typedef struct breccia_why {
   long long bond[2]; /* numbers of the two particles, with one_bond */
 } breccia_why;
 
-/** Reports the number of broken bonds of a result by cause, and the time, position and reason of single bonds.
+/** Reports the number of broken bonds of a result by cause, and the time, position and reason of single bonds; then the
+ *  number of bonds or material points past their peak at the last written state, and the most damaged ones.
  *  @param[in]  result  folder of results, or a file of them
  *  @param[out] text    for breccia_text_free; NULL after a failure
  *  @return 0; 2: no results, damaged ones, or a bond that did not break */

@@ -1,4 +1,5 @@
-/* Command `breccia why`: number of broken bonds by cause, and the time, position and reason of single bonds. */
+/* Command `breccia why`: number of broken bonds by cause, time, position and reason of single bonds, and number and
+ * position of softened bonds. */
 #include "verbs.h"
 
 #include <limits.h>
@@ -7,7 +8,7 @@ enum { BOND, FIRST, COUNT };
 
 static const Option options[] = {
     {"bond", "A,B", "only the bond between these two particles, numbered by their rows in the result file, from 0"},
-    {"first", "N", "list the first N broken bonds (10)"},
+    {"first", "N", "list the first N broken bonds, and up to 10 of the most damaged ones (10)"},
     {0},
 };
 
@@ -40,9 +41,13 @@ static int why_run(int argc, char **argv, const Verb *verb)
 const Verb verb_why = {
     .name = "why",
     .arguments = "FOLDER [options]",
-    .about = "why the bonds of a result broke: counts by cause, and when, where and why the first ones did",
+    .about = "why the bonds of a result broke or softened: counts by cause, and when, where and why the first ones did",
     .options = options,
     .more =
         "FOLDER is the folder of a run, or its file results.vtkhdf. Causes: the limit of the failure criterion, with\n"
-        "value and limit; a law that found no stress; too few bonds left at a particle.",
+        "value and limit; a law that found no stress; too few bonds left at a particle. Bonds, links or material "
+        "points\n"
+        "whose law softens are past their peak if their damage is above 0 at the last written state; damage of 1 "
+        "means\n"
+        "that they carry nothing.",
     .run = why_run};

@@ -223,6 +223,9 @@ struct FormulationType {
   void (*take_strengths)(void *formulation);
   /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
   double (*history)(const void *formulation, int64_t place, int k);
+  /** Committed damage of an intact bond, 0 to 1, of formulations that store the damage of bonds without points. NULL:
+   * bonds have no such damage. */
+  double (*bond_damage)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
   void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);

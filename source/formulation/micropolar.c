@@ -360,6 +360,7 @@ const FormulationType formulation_micropolar = {
     .state = micropolar_state,
     .commit = micropolar_commit,
     .history = micropolar_history,
+    .bond_damage = micropolar_link_damage,
     .characteristic_length = characteristic_length,
     .crack_length = micropolar_crack_length,
     .half_state = half_state,

@@ -108,6 +108,14 @@ double micropolar_history(const void *formulation, int64_t place, int k)
   return weights > 0 ? sum / weights : 0;
 }
 
+double micropolar_link_damage(const void *formulation, int64_t slice, int64_t slot, int lane)
+{
+  const Micropolar *m = formulation;
+  if (!m->damage || !m->damage->touched[slice]) return 0;
+  const int64_t at = slot * SLICE + lane;
+  return fmax(m->damage->tension[0][at], m->damage->compression[0][at]);
+}
+
 size_t micropolar_damage_bytes(const Micropolar *m)
 {
   if (!m->damage) return 0;

@@ -1,7 +1,9 @@
-/* Report on broken bonds of a result: counts by cause, and a line for each requested bond. */
+/* Report on broken and softened bonds of a result: counts by cause, a line for each requested broken bond, and lines for
+ * the most damaged bonds or material points. */
 #include "model/host.h"
 #include "model/sized.h"
 #include "results/broken_bonds.h"
+#include "results/softened_bonds.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,13 +27,20 @@ static void why_count(const BondReasons *of, Text *text)
   text_add(text, "\n");
 }
 
+/** Adds a position in the coordinates of the body. */
+static void why_position(const ResultView *view, const double position[3], Text *text)
+{
+  text_add(text, " at [");
+  for (int k = 0; k < (view->plane ? 2 : 3); ++k) text_add(text, "%s%.6g", k ? ", " : "", position[k]);
+  text_add(text, "] %s: ", view->length_unit);
+}
+
 /** Adds a line for one bond with its particles, position and reason. */
 static void why_bond(const ResultView *view, const BondReasons *of, const BondReason *bond, Text *text)
 {
-  text_add(text, "step %lld, time %.6g %s, particles %lld and %lld at [", (long long)bond->step, bond->time,
-           view->time_unit, (long long)bond->particles[0], (long long)bond->particles[1]);
-  for (int k = 0; k < (view->plane ? 2 : 3); ++k) text_add(text, "%s%.6g", k ? ", " : "", bond->position[k]);
-  text_add(text, "] %s: ", view->length_unit);
+  text_add(text, "step %lld, time %.6g %s, particles %lld and %lld", (long long)bond->step, bond->time, view->time_unit,
+           (long long)bond->particles[0], (long long)bond->particles[1]);
+  why_position(view, bond->position, text);
   const char *space = *of->unit ? " " : "";
   if (bond->cause == BREAK_LIMIT && isnan(bond->value))
     text_add(text, "'%s'\n", of->criterion);
@@ -42,6 +51,30 @@ static void why_bond(const ResultView *view, const BondReasons *of, const BondRe
     text_add(text, "%s\n",
              bond->cause == BREAK_LAW ? "the law of its point, or of an end, found no stress"
                                       : "too few bonds were left at one of its ends");
+}
+
+/** Adds a line for a damaged bond or material point. */
+static void why_softened_point(const ResultView *view, const SoftenedPoint *point, Text *text)
+{
+  const bool bond = point->particles[0] != point->particles[1];
+  text_add(text, "%s %lld", bond ? "particles" : "particle", (long long)point->particles[0]);
+  if (bond) text_add(text, " and %lld", (long long)point->particles[1]);
+  why_position(view, point->position, text);
+  text_add(text, "damage %.6g", point->damage);
+  if (bond) text_add(text, ", opened by %.6g %s", point->opening, view->length_unit);
+  text_add(text, "\n");
+}
+
+/** Adds the number of bonds or points past their peak at the last written state, and a line for each of the most
+ *  damaged ones. @param[in] most  number of lines */
+static void why_softened(const ResultView *view, const SoftenedView *softened, long long most, Text *text)
+{
+  const SoftenedPoints *points = &softened->points;
+  if (!*softened->noun || !points->total) return;
+  text_add(text, "%lld of %lld softening %s are past their peak at time %.6g %s, %lld of them carry nothing\n",
+           (long long)points->softened, (long long)points->total, softened->noun, view->times[view->steps - 1],
+           view->time_unit, (long long)points->spent);
+  for (int k = 0; k < points->listed && k < most; ++k) why_softened_point(view, &points->worst[k], text);
 }
 
 /** Adds a line for the bond between two particles. @return BRECCIA_USER_ERROR after a message if it did not break */
@@ -69,16 +102,19 @@ int breccia_explain_breaks(const char *result, const breccia_why *given, char **
   breccia_why wish;
   ResultView view;
   BondReasons of = {0};
+  SoftenedView softened = {.noun = ""};
   Text text = {0};
   char *path = result_view_path(result);
   int status = sized_take(&wish, sizeof wish, given, "breccia_why", error);
   if (!status) status = path ? result_view_open(&view, path, error) : BRECCIA_FAILURE;
   if (!status) {
     status = broken_bonds_read(&view, &of, error);
+    if (!status) status = softened_bonds_read(&view, &softened, error);
     if (!status && wish.one_bond) status = why_one(&view, &of, wish.bond, &text, error);
     if (!status && !wish.one_bond) {
       why_count(&of, &text);
       for (int64_t k = 0; k < of.count && k < wish.first; ++k) why_bond(&view, &of, &of.bonds[k], &text);
+      why_softened(&view, &softened, wish.first, &text);
     }
     broken_bonds_destroy(&of);
     result_view_close(&view);

@@ -12,6 +12,7 @@
 #include "results/hdf5_file.h"
 #include "results/journal.h"
 #include "results/result_view.h"
+#include "results/softened_bonds.h"
 #include "results/xdmf.h"
 #include <errno.h>
 #include <math.h>
@@ -312,6 +313,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
                            names->frequencies);
     }
     if (!names->frequencies) bad |= bar_states_create(own, d, units, names->single); /* modes strain nothing */
+    if (!names->frequencies) bad |= softened_bonds_create(own, d);
     hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     bad |= states < 0 || H5Gclose(states) < 0;
     bad |= H5Gclose(own) < 0;
@@ -415,6 +417,7 @@ static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad = bad || broken_bonds_write(own, d, file->broken_written);
   bad = bad || bar_states_write(own, d, file->writes - 1);
+  bad = bad || softened_bonds_write(own, d, file->writes - 1);
   bad = bad || create_state(h5->id, file, file->writes - 1);
   bad = bad || H5Fflush(h5->id, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
   if (own >= 0 && H5Gclose(own) < 0) bad = 1;
@@ -492,6 +495,7 @@ static int cut(ResultFile *file, Hdf5File *h5, const Domain *d)
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad |= broken_bonds_cut(own, file->broken_written);
   bad |= bar_states_cut(own, d, file->writes);
+  bad |= softened_bonds_cut(own, file->writes);
   if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
   hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5->id, file, k);

@@ -40,6 +40,40 @@ contains "the summary tells the cause" "$(grep first_broken_bond out/summary.jso
 "$breccia" run torn.yaml --output parts --restart > /dev/null 2>&1 || fail "the restart"
 "$breccia" why parts --first 1000000 | cmp - all || fail "after a restart other reasons"
 
+# Bonds that soften without breaking: how many, and where, at the last state; the same after a restart.
+cat > soft.yaml <<'Y'
+title: Softened strip
+units: {length: mm, force: N, time: s}
+materials:
+  c: &c {model: exponential-softening, density: 2.4e-9, Young modulus: 30000, tensile strength: 3, fracture energy: 0.1}
+  w: {<<: *c, tensile strength: 2.7}
+body:
+  l: &b {material: c, lattice: square, spacing: 5, thickness: 100, shape: {box: {from: [0, 0], to: [40, 30]}}}
+  m: {<<: *b, material: w, shape: {box: {from: [40, 0], to: [50, 30]}}}
+  r: {<<: *b, shape: {box: {from: [50, 0], to: [90, 30]}}}
+peridynamics: {formulation: bond-based, space: plane stress}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, free]}
+  - {on: {nearest: [2.5, 17.5]}, displacement: [free, 0]}
+  - {on: {face: x+, layers: 3}, displacement: [0.04, free], history: {ramp to: 1}}
+solve: {static: {increments: 8}}
+results: {number: 3}
+pictures: []
+Y
+"$breccia" run soft.yaml --output soft > said 2>&1 || fail "the strip: $(cat said)"
+"$breccia" why soft > all
+equal "no bond broke" "$(head -1 all)" "0 bonds broke"
+past=$(sed -n '2s/ of .*//p' all)
+[ "${past:-0}" -gt 20 ] || fail "bonds past their peak: $(cat all)"
+contains "softening bonds" "$(sed -n 2p all)" "softening bonds are past their peak at time 1 s, "
+equal "ten of the most damaged ones" "$(grep -c '^particles [0-9]* and [0-9]* at \[.*\] mm: damage 0.9[0-9]*, opened by ' all)" 10
+equal "in the gap that is the weakest" "$(sed -n 's/^particles.* at \[\([0-9.]*\),.*/\1/p' all | awk '$1 < 35 || $1 > 55' | wc -l)" 0
+equal "the most damaged first" "$(sed -n 's/.*damage \([0-9.]*\),.*/\1/p' all | sort -rn | cmp - <(sed -n 's/.*damage \([0-9.]*\),.*/\1/p' all) && echo yes)" yes
+equal "none is listed" "$("$breccia" why soft --first 0 | wc -l)" 2
+"$breccia" run soft.yaml --output again --steps 4 > /dev/null 2>&1
+"$breccia" run soft.yaml --output again --restart > /dev/null 2>&1 || fail "the restart of the strip"
+"$breccia" why again | cmp - all || fail "after a restart other softened bonds"
+
 refused() { # WORDS ARGUMENTS...
   local words=$1
   shift
