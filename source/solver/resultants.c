@@ -108,6 +108,19 @@ void resultants_note(Solver *s)
   }
 }
 
+int resultants_largest_at(const Solver *s, double time)
+{
+  const Resultants *r = s->resultants;
+  int found = -1;
+  for (int l = 0; r && l < s->loading->count; ++l) {
+    const Load *load = &s->loading->loads[l];
+    if (!load_acts(s->loading, load) || !(resultants_size(r->largest[l]) > 0) || r->time[l] != time) continue;
+    if (load->spec->name) return l;
+    if (found < 0) found = l;
+  }
+  return found;
+}
+
 double resultants_peak_factor(const Solver *s, const Load *load)
 {
   if (load->first > s->clock.stage) return 0;

@@ -76,6 +76,24 @@ const Section static_section = {.name = "static",
                                 .size = sizeof(StaticSpec),
                                 FIELDS(static_fields)};
 
+/** Adds the rows of the increments in which the body jumped. */
+static void list_jumps(Jumps *jumps, StateList *list)
+{
+  static const char *const names[] = {"first increments of jumps", "last increments of jumps"};
+  int64_t *const rows[] = {jumps->first, jumps->last};
+  state_add_count(list, "ranges of jumps", STATE_COMMITTED, &jumps->ranges);
+  state_add_count(list, "jumps beyond the ranges", STATE_COMMITTED, &jumps->omitted);
+  for (int k = 0; k < 2; ++k)
+    state_add(list,
+              &(StateRow){
+                  .unit = "1", .kind = STATE_COUNTS, .role = STATE_COMMITTED, .count = JUMP_RANGES, .values = rows[k]},
+              names[k], NULL);
+  state_add_count(list, "increment of the peak jump", STATE_COMMITTED, &jumps->peak_step);
+  state_add_count(list, "load of the peak jump", STATE_COMMITTED, &jumps->peak_load);
+  state_add_number(list, "beginning of the peak jump", "time", STATE_COMMITTED, &jumps->peak_begin);
+  state_add_number(list, "end of the peak jump", "time", STATE_COMMITTED, &jumps->peak_end);
+}
+
 static void list_state(Solver *run, StateList *list)
 {
   Static *s = run->own;
@@ -85,6 +103,7 @@ static void list_state(Solver *run, StateList *list)
   state_add_count(list, "cuts of increments", STATE_LEARNED, &s->cuts);
   state_add_count(list, "increments by secants", STATE_COMMITTED, &s->descended);
   state_add_count(list, "increments by relaxation", STATE_COMMITTED, &s->relaxed);
+  list_jumps(&s->jumps, list);
 }
 
 static void destroy(Solver *run)
@@ -120,7 +139,8 @@ static int create(Solver *run, Error *error)
   if (increment_create(&s->increment, run->domain, run->loading, error) || newton_create(&s->newton, error) ||
       pressing_create(&s->pressing, run->loading, error))
     return BRECCIA_FAILURE;
-  if (domain_may_soften(run->domain) && !run->domain->forces.count && !s->newton.relaxes && !s->spec->control &&
+  const bool softens = s->spec->control ? domain_bonds_may_soften(run->domain) : domain_may_soften(run->domain);
+  if (softens && !run->domain->forces.count && !s->newton.relaxes &&
       !vectors_make(s->newton.change_forces, run->domain->particles, "works", error))
     return BRECCIA_FAILURE;
   return s->newton.relaxes ? relaxation_create(&s->relaxation, &s->newton, error) : BRECCIA_OK;

@@ -36,6 +36,19 @@ typedef struct Way {
   double bonds, given_off, sudden; /* works booked of it */
 } Way;
 
+/** Maximal number of ranges of increments that are listed. */
+enum { JUMP_RANGES = 6 };
+
+/** Increments of a stage in which the body jumped: found by descent by secants or dynamic relaxation. */
+typedef struct Jumps {
+  int64_t ranges, omitted;                       /* number of listed ranges; number of increments beyond them */
+  int64_t first[JUMP_RANGES], last[JUMP_RANGES]; /* numbers of increments of each range */
+  /** The last jump at whose beginning the force of a load or support was the largest so far: number of the increment,
+   *  0: none; index of the load; times of the beginning and of the end. */
+  int64_t peak_step, peak_load;
+  double peak_begin, peak_end;
+} Jumps;
+
 typedef struct Static {
   Domain *domain;
   const Loading *loading;
@@ -55,6 +68,10 @@ typedef struct Static {
   int64_t cuts; /* in the stage */
   int64_t descended,
       relaxed; /* increments in which descent by secants, and dynamic relaxation found what Newton's method did not */
+  Jumps jumps;
+  /** True within an increment for which short tries found no equilibrium: a long try is accepted though the body softens
+   *  within it. */
+  bool takes_coarse;
   double
       lag; /* forces out of balance over the reference, with what the last increment that was given back had led to */
 } Static;

@@ -4,6 +4,7 @@
 
 #include "loading/one_sided.h"
 #include "loading/support.h"
+#include "solver/resultants.h"
 #include "solver/vectors.h"
 
 #include <math.h>
@@ -43,15 +44,18 @@ static void book_sudden(Static *s, double *const moved[MOTIONS])
   s->way.sudden = sudden;
 }
 
-/** Whether the body softens on the way of an increment in which it has come to equilibrium, so that it may have passed a peak: what the work of an
- *  increment that goes on as it began is more than that by the trapezium rule bounds twice what that misses.
+/** Returns true if the body softens on the way of an increment in which it has come to equilibrium. The increment may
+ *  then have passed a peak, or may have led to an equilibrium that shorter increments do not lead to: cracking beams
+ *  under a controlled opening have several, of which long increments find those with lower loads. The work of an increment
+ *  that goes on as it began, less the work by the trapezium rule, bounds twice what that rule misses.
  *  @param[in] length  of the increment */
 static bool is_coarse(const Static *s, double length)
 {
   const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of an increment as asked for */
   const Particles *p = s->domain->particles;
   double work = 0;
-  if (!s->newton.change_forces[0] || length / 2 < least * static_whole_increment(s->spec)) return false;
+  if (!s->newton.change_forces[0] || s->takes_coarse || length / 2 < least * static_whole_increment(s->spec))
+    return false;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       work -= 0.5 * s->domain->counted[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
@@ -258,17 +262,77 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
   end_now(clock);
 }
 
-/** At the end of the stage: what is said to be followed was jumped over. */
-static void tell_jumps(const Static *s, Text *warning)
+/** Notes that the body jumped in the increment that the clock has just counted.
+ *  @param[in] begin  time at the beginning of the increment */
+static void note_jump(const Solver *run, double begin)
 {
-  text_add_warning(warning,
-                   "static: in %lld of %lld increments the body gave way: Newton's method hardly came on, or found no "
-                   "equilibrium near, and ",
+  Static *s = run->own;
+  Jumps *j = &s->jumps;
+  const int64_t step = s->clock->step;
+  const int load = resultants_largest_at(run, begin);
+  if (j->ranges && j->last[j->ranges - 1] == step - 1 && !j->omitted) {
+    j->last[j->ranges - 1] = step;
+  } else if (j->ranges < JUMP_RANGES) {
+    j->first[j->ranges] = j->last[j->ranges] = step;
+    ++j->ranges;
+  } else {
+    ++j->omitted;
+  }
+  if (load < 0) return;
+  j->peak_step = step;
+  j->peak_load = load;
+  j->peak_begin = begin;
+  j->peak_end = s->clock->time;
+}
+
+/** Adds the numbers of the increments in which the body jumped. */
+static void tell_jump_numbers(const Jumps *j, Text *warning)
+{
+  text_add(warning, " (");
+  for (int64_t k = 0; k < j->ranges; ++k) {
+    text_add(warning, "%s%lld", k ? ", " : "", (long long)j->first[k]);
+    if (j->last[k] > j->first[k]) text_add(warning, " to %lld", (long long)j->last[k]);
+  }
+  if (j->omitted) text_add(warning, " and %lld more", (long long)j->omitted);
+  text_add(warning, ")");
+}
+
+/** Adds whether the largest force of a load or support is at the beginning of a jump, so that its peak lies in the
+ *  jump, and the remedy. */
+static void tell_peak_in_jump(const Solver *run, Text *warning)
+{
+  const Static *s = run->own;
+  const Jumps *j = &s->jumps;
+  if (!j->peak_step || resultants_largest_at(run, j->peak_begin) < 0) {
+    text_add(warning, "; no load or support was at its largest force when one of them began");
+    return;
+  }
+  const Load *load = &run->loading->loads[j->peak_load];
+  text_add(warning, "; the largest force of ");
+  if (load->spec->name)
+    text_add(warning, "load '%s'", load->spec->name);
+  else
+    text_add(warning, "the load in line %d", load->spec->head.node->line);
+  text_add(warning,
+           " is that at the beginning of increment %lld, so that the peak may lie between times %.6g and %.6g %s; "
+           "compare with 'increments: %lld'",
+           (long long)j->peak_step, j->peak_begin, j->peak_end, s->clock->time_unit,
+           (long long)(2 * s->spec->increments));
+}
+
+/** At the end of the stage: what is said to be followed was jumped over. */
+static void tell_jumps(const Solver *run, Text *warning)
+{
+  const Static *s = run->own;
+  text_add_warning(warning, "static: in %lld of %lld increments the body gave way",
                    (long long)(s->descended + s->relaxed), (long long)(s->clock->step - s->clock->stage_step));
+  tell_jump_numbers(&s->jumps, warning);
+  text_add(warning, ": Newton's method hardly came on, or found no equilibrium near, and ");
   if (s->descended) text_add(warning, "descent by secants%s", s->relaxed ? "" : " the state of rest at their ends");
   if (s->descended && s->relaxed) text_add(warning, " (in %lld) or ", (long long)s->descended);
   if (s->relaxed) text_add(warning, "dynamic relaxation the state of rest at their ends");
   text_add(warning, "; what is between is not followed");
+  tell_peak_in_jump(run, warning);
 }
 
 /** Whether Newton's method is not asked alone any more, after it has failed: it hardly comes on, or there is no equilibrium near.
@@ -348,6 +412,8 @@ int static_advance(Solver *run, Text *warning, Error *error)
   const Learned before = {s->next, s->cuts, s->newton.linear.given_up};
   const bool was_spent = control_is_spent(&s->control);
   const int64_t broken = s->domain->broken_count;
+  const double began = clock->time;
+  s->takes_coarse = false;
   int64_t iterations = 0;
   bool may_relax = true;
   TryBy way;
@@ -382,6 +448,11 @@ int static_advance(Solver *run, Text *warning, Error *error)
     tell_refused(s, outcome, settled);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
+      if (s->spec->control && s->newton.change_forces[0] && !s->takes_coarse) { /* a long one may lead over the gap */
+        s->takes_coarse = true;
+        s->next = static_whole_increment(s->spec);
+        continue;
+      }
       if (static_hands_over(s->spec)) {
         hand_over(run, outcome, settled, warning);
         ++clock->step; /* one of no length */
@@ -396,6 +467,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   if (way != BY_METHOD || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
   if (way == BY_SECANTS) run->records[clock->stage].descended = (double)++s->descended;
   if (way == BY_RELAXATION) run->records[clock->stage].relaxed = (double)++s->relaxed;
+  if (way != BY_METHOD) note_jump(run, began);
   clock->ended = clock->time >= clock->stage_end - 1e-9 * static_whole_increment(s->spec);
   static_count_steps(run);
   if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
@@ -406,7 +478,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
     end_now(clock);
   }
   if (clock->ended) {
-    if (s->descended || s->relaxed) tell_jumps(s, warning);
+    if (s->descended || s->relaxed) tell_jumps(run, warning);
     increment_forget(&s->increment);
     state_copy_destroy(&s->whole);
   }

@@ -259,6 +259,30 @@ Y
 contains "time of a body that cracks" "$("$breccia" check cracks.yaml 2>&1)" "ten to a hundred times that where it cracks"
 "$breccia" run cracks.yaml > out 2> errors || fail "a cantilever that cracks: $(cat errors)"
 told=$(grep -o 'in [0-9]* of [0-9]* increments the body gave way' out errors | grep -o 'in [0-9]*' | cut -c4- | head -n 1)
+# They are told by number, and whether a load or support was at its largest where one began.
+cat > peak.yaml <<'Y'
+title: A strip that tears between two increments
+units: {length: mm, force: N, time: s}
+materials:
+  c: &c {model: exponential-softening, density: 2.4e-9, Young modulus: 30000, tensile strength: 3, fracture energy: 0.06}
+  w: {<<: *c, tensile strength: 2.7}
+body:
+  l: &b {material: c, lattice: square, spacing: 5, thickness: 100, shape: {box: {from: [0, 0], to: [95, 30]}}}
+  m: {<<: *b, material: w, shape: {box: {from: [95, 0], to: [105, 30]}}}
+  r: {<<: *b, shape: {box: {from: [105, 0], to: [200, 30]}}}
+peridynamics: {formulation: bond-based, space: plane stress, surface correction: energy}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, free]}
+  - {on: {nearest: [2.5, 17.5]}, displacement: [free, 0]}
+  - {name: pull, on: {face: x+, layers: 3}, displacement: [0.05, free], history: {ramp to: 1}}
+solve: {static: {increments: 10}}
+pictures: []
+Y
+"$breccia" run peak.yaml > out 2> tears || fail "a strip that tears: $(cat tears)"
+range=$(sed -n 's/.* increments the body gave way (\([0-9]*\) to \([0-9]*\)): .*/\1 \2/p' tears)
+peak=$(sed -n "s/.*; the largest force of load 'pull' is that at the beginning of increment \([0-9]*\), .*/\1/p" tears)
+[ "${peak:-0}" -ge "${range%% *}" ] && [ "$peak" -le "${range##* }" ] || fail "numbers of increments, the peak among them: $(cat tears)"
+contains "what to do" "$(cat tears)" "compare with 'increments: 20'"
 contains "increments by secants" "$(cat cracks/summary.json)" "\"increments_by_secants\": ${told:-?},"
 grep -q increments_by_ $s && fail "an elastic body at rest gave way: $(cat $s)"
 # Forces within the tolerance of equilibrium do work of either sign: a few nJ of 16 J are not worth a word.
