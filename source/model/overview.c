@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/cores.h"
 #include "base/tensor.h"
+#include "domain/bending_strength.h"
 #include "domain/tensile_strength.h"
 #include "domain/toughness.h"
 #include "model/plausibility.h"
@@ -228,6 +229,7 @@ const char *breccia_model_overview(breccia_model *model)
     if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, model->units, text);
   toughness_describe(d, model->spec->failure, model->units, text);
   tensile_strength_describe(d, text);
+  bending_strength_describe(d, text);
   describe_initial_stress(model, text);
   plausibility_describe_contact(model, text);
   forces_describe(&d->forces, model->units, text);

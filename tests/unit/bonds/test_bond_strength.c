@@ -1,5 +1,6 @@
 /* Strength of bodies of softening bonds: closed forms of a network of nearest neighbours, and strips that carry the
  * tensile strength of the deck. */
+#include "domain/bending_strength.h"
 #include "support.h"
 
 #define LAW                                                                                                            \
@@ -241,9 +242,62 @@ static void the_strongest_direction_decides(void **state)
   }
 }
 
+/** The bending strength that is told lies between those measured with 10 and 20 rows, and at depths of 0.3, 0.6 and 1.2
+ *  E G_F / f_t^2; there is none for laws that were not measured. */
+static void bending_strength_lies_between_measured_beams(void **state)
+{
+  (void)state;
+  const char *const law = "exponential-softening";
+  const double coarse = bending_factor("bond-based", law, 10, 0.3), fine = bending_factor("bond-based", law, 20, 0.3);
+  assert_true(coarse > 0.9 && fine > coarse + 0.02);
+  assert_true(bending_factor("bond-based", law, 5, 0.1) == coarse);
+  assert_true(bending_factor("bond-based", law, 50, 0.1) == fine);
+  assert_near(bending_factor("bond-based", law, sqrt(200), 0.3), (coarse + fine) / 2, 1e-12);
+  assert_near(bending_factor("bond-based", law, 10, sqrt(0.3 * 0.6)),
+              (coarse + bending_factor("bond-based", law, 10, 0.6)) / 2, 1e-12);
+  assert_true(isnan(bending_factor("bond-based", "elastic-brittle", 10, 0.3)));
+  assert_true(isnan(bending_factor("ordinary", law, 10, 0.3)));
+}
+
+/** The strength that is told of beams and of links is that of the deck: rows over the shortest side, depth over
+ *  E G_F / f_t^2 of the tensile strength, whichever share of that strength bonds take. */
+static void bending_strength_is_told(void **state)
+{
+  (void)state;
+  static const char *const deck =
+      "units: {length: mm, force: N, time: s}\n"
+      "materials: {c: {model: %s, density: 2.4e-9, Young modulus: 30000, %s}}\n"
+      "body: {b: {material: c, lattice: %s, spacing: 10, thickness: 100, shape: {box: {"
+      "particles: [%d, 20]}}}}\n"
+      "peridynamics: {formulation: %s, space: plane stress}\nsolve: {explicit: {steps: 1}}\n";
+  breccia_model *m =
+      model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 60, "bond-based");
+  const char *words = strstr(breccia_model_overview(m), "b: a beam of ");
+  double rows, depth, factor;
+  assert_non_null(words);
+  assert_int_equal(
+      sscanf(words, "b: a beam of %lf rows, %lf E G_F/f_t^2 deep, carries %lf times", &rows, &depth, &factor), 3);
+  assert_near(rows, 20, 1e-9);
+  assert_near(depth, 0.6, 1e-9);
+  assert_near(factor, bending_factor("bond-based", "bilinear-softening", 20, 0.6), 5e-3);
+  breccia_model_destroy(&m);
+  m = model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 30, "bond-based");
+  assert_null(strstr(breccia_model_overview(m), "a beam of ")); /* too short for a beam */
+  breccia_model_destroy(&m);
+  m = model_of(deck, "link-damage", "Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 0.1", "hexagonal", 60,
+               "micropolar");
+  words = strstr(breccia_model_overview(m), "b: a strip of these links pulled along its rows carries ");
+  assert_non_null(words);
+  assert_int_equal(sscanf(words, "b: a strip of these links pulled along its rows carries %lf times", &factor), 1);
+  assert_near(factor, 1.29, 1e-9);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bending_strength_lies_between_measured_beams),
+      cmocka_unit_test(bending_strength_is_told),
       cmocka_unit_test(six_neighbours_carry_what_a_closed_form_says),
       cmocka_unit_test(strength_grows_with_the_length_of_softening),
       cmocka_unit_test(strips_carry_their_tensile_strength),

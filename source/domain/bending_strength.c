@@ -1,0 +1,138 @@
+#include "domain/bending_strength.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Depths over E G_F / f_t^2 of the measured beams. */
+enum { BENDING_DEPTHS = 3 };
+static const double bending_depths[BENDING_DEPTHS] = {0.3, 0.6, 1.2};
+
+/** Measured beams of one formulation, law and number of rows. */
+typedef struct BendingRow {
+  const char *formulation, *law;
+  double rows;
+  double factor[BENDING_DEPTHS]; /* bending strength over that of a cohesive crack, by depth */
+} BendingRow;
+
+/* Measured by bench/bending.py at the default horizon of each formulation, in plane stress: square lattices, bonds with
+ * `surface correction: energy`, links in a hexagonal lattice. Rows of one law in ascending order. */
+static const BendingRow bending_rows[] = {
+    {"bond-based", "exponential-softening", 10, {1.09, 1.02, 1.00}},
+    {"bond-based", "exponential-softening", 20, {1.19, 1.17, 1.09}},
+    {"bond-based", "bilinear-softening", 10, {1.05, 1.06, 1.02}},
+    {"bond-based", "bilinear-softening", 20, {1.13, 1.11, 1.16}},
+    {"bond-based", "trilinear-softening", 10, {1.06, 1.08, 0.97}},
+    {"bond-based", "trilinear-softening", 20, {1.15, 1.15, 1.24}},
+    {"hybrid", "mazars", 10, {0.95, 0.95, 0.96}},
+};
+
+enum { BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows };
+
+/** Tensile strength of a strip of links along the rows of its lattice, over E times the `tensile stretch`. */
+typedef struct LinkRow {
+  const char *lattice;
+  double factor;
+} LinkRow;
+
+/* Measured on strips of 12 rows whose ends are stronger by half. */
+static const LinkRow link_rows[] = {{"square", 1.19}, {"hexagonal", 1.29}};
+
+/** Returns the factor of a measured number of rows at a depth, linear in the logarithm of the depth. */
+static double bending_at_depth(const BendingRow *row, double depth)
+{
+  if (!(depth > bending_depths[0])) return row->factor[0];
+  for (int k = 1; k < BENDING_DEPTHS; ++k) {
+    if (depth > bending_depths[k]) continue;
+    const double part = log(depth / bending_depths[k - 1]) / log(bending_depths[k] / bending_depths[k - 1]);
+    return row->factor[k - 1] + part * (row->factor[k] - row->factor[k - 1]);
+  }
+  return row->factor[BENDING_DEPTHS - 1];
+}
+
+double bending_factor(const char *formulation, const char *law, double rows, double depth)
+{
+  const BendingRow *below = NULL;
+  for (int k = 0; k < BENDING_ROWS; ++k) {
+    const BendingRow *row = &bending_rows[k];
+    if (strcmp(row->formulation, formulation) != 0 || strcmp(row->law, law) != 0) continue;
+    const double factor = bending_at_depth(row, depth);
+    if (rows <= row->rows) {
+      if (!below) return factor;
+      const double part = log(rows / below->rows) / log(row->rows / below->rows),
+                   before = bending_at_depth(below, depth);
+      return before + part * (factor - before);
+    }
+    below = row;
+  }
+  return below ? bending_at_depth(below, depth) : NAN;
+}
+
+/** Finds the shortest and the longest side of a block [length], each with the spacing that its outer particles stand
+ *  for. @return the first slice of the block; -1: none */
+static int64_t bending_sides(const Domain *d, int block, double *shortest, double *longest)
+{
+  const Particles *p = d->particles;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  int64_t first = -1;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int64_t place = p->place_of[n];
+    if (p->block[place / SLICE] != block || body_outside(&d->body, (int32_t)n)) continue;
+    if (first < 0) first = place / SLICE;
+    for (int k = 0; k < d->body.dimensions; ++k) {
+      low[k] = fmin(low[k], p->position[k][place]);
+      high[k] = fmax(high[k], p->position[k][place]);
+    }
+  }
+  *shortest = INFINITY;
+  *longest = 0;
+  for (int k = 0; k < d->body.dimensions && first >= 0; ++k) {
+    const double side = high[k] - low[k] + d->body.lattices[block].spacing;
+    *shortest = fmin(*shortest, side);
+    *longest = fmax(*longest, side);
+  }
+  return first;
+}
+
+/** Adds the line on the bending strength of a block. */
+static void bending_describe_block(const Domain *d, int block, const Region *region, const Material *m, double depth,
+                                   Text *text)
+{
+  const FormulationType *type = region->type;
+  if (type->strength_of_body && !type->strength_of_body(region->formulation)) return;
+  const double young = material_young(m), strength = sqrt(2 * young * m->softening_energy) / m->strength_share,
+               length = young * m->fracture_energy / (strength * strength),
+               rows = depth / d->body.lattices[block].spacing,
+               factor = bending_factor(type->name, m->law_name, rows, depth / length);
+  if (isnan(factor) || !isfinite(length)) return;
+  text_add(
+      text,
+      "%s: a beam of %.0f rows, %.2g E G_F/f_t^2 deep, carries %.2f times the bending strength of a cohesive crack "
+      "with its numbers (measured at the default horizon in plane stress)\n",
+      d->body.blocks[block]->head.name, rows, depth / length, factor);
+}
+
+/** Adds the line on the tensile strength of a block of links. */
+static void link_describe_block(const Domain *d, int block, Text *text)
+{
+  for (size_t k = 0; k < sizeof link_rows / sizeof *link_rows; ++k)
+    if (!strcmp(link_rows[k].lattice, d->body.lattices[block].type->name))
+      text_add(text,
+               "%s: a strip of these links pulled along its rows carries %.2f times E times the 'tensile stretch' "
+               "(measured); give the stretch less that\n",
+               d->body.blocks[block]->head.name, link_rows[k].factor);
+}
+
+void bending_strength_describe(const Domain *d, Text *text)
+{
+  const double slender = 2;
+  for (int block = 0; block < d->body.block_count; ++block) {
+    double depth, longest;
+    if (!d->body.lattices[block].chunks || d->body.dimensions < 2) continue;
+    const int64_t slice = bending_sides(d, block, &depth, &longest);
+    if (slice < 0) continue;
+    const Material *m = &d->materials[d->material[slice]];
+    const Region *region = domain_region(d, slice * SLICE);
+    if (m->law->link && region->type->bond_damage) link_describe_block(d, block, text);
+    if (longest >= slender * depth && m->softening_energy > 0) bending_describe_block(d, block, region, m, depth, text);
+  }
+}
