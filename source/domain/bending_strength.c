@@ -17,13 +17,14 @@ typedef struct BendingRow {
 /* Measured by bench/bending.py at the default horizon of each formulation, in plane stress: square lattices, bonds with
  * `surface correction: energy`, links in a hexagonal lattice. Rows of one law in ascending order. */
 static const BendingRow bending_rows[] = {
-    {"bond-based", "exponential-softening", 10, {1.09, 1.02, 1.00}},
-    {"bond-based", "exponential-softening", 20, {1.19, 1.17, 1.09}},
-    {"bond-based", "bilinear-softening", 10, {1.05, 1.06, 1.02}},
-    {"bond-based", "bilinear-softening", 20, {1.13, 1.11, 1.16}},
-    {"bond-based", "trilinear-softening", 10, {1.06, 1.08, 0.97}},
-    {"bond-based", "trilinear-softening", 20, {1.15, 1.15, 1.24}},
+    {"bond-based", "exponential-softening", 10, {1.09, 1.03, 0.99}},
+    {"bond-based", "exponential-softening", 20, {1.19, 1.20, 1.03}},
+    {"bond-based", "bilinear-softening", 10, {1.04, 1.06, 1.01}},
+    {"bond-based", "bilinear-softening", 20, {1.13, 1.13, 1.18}},
+    {"bond-based", "trilinear-softening", 10, {1.05, 1.07, 0.97}},
+    {"bond-based", "trilinear-softening", 20, {1.11, 1.16, 1.21}},
     {"hybrid", "mazars", 10, {0.95, 0.95, 0.96}},
+    {"hybrid", "mazars", 20, {0.98, 0.98, 0.99}},
 };
 
 enum { BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows };
