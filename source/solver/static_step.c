@@ -314,9 +314,9 @@ static void tell_peak_in_jump(const Solver *run, Text *warning)
   else
     text_add(warning, "the load in line %d", load->spec->head.node->line);
   text_add(warning,
-           " is that at the beginning of increment %lld, so that the peak may lie between times %.6g and %.6g %s; "
-           "compare with 'increments: %lld'",
-           (long long)j->peak_step, j->peak_begin, j->peak_end, s->clock->time_unit,
+           " is that at the beginning of increment %lld, so that the peak may lie between %.6g %s and %.6g %s; compare "
+           "with 'increments: %lld'",
+           (long long)j->peak_step, j->peak_begin, s->clock->time_unit, j->peak_end, s->clock->time_unit,
            (long long)(2 * s->spec->increments));
 }
 
