@@ -169,9 +169,16 @@ def try_deck(options, work, number):
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def name_of(line):
+    """Returns a short name for a line of words, which does not depend on other lines."""
+    digits, number = "0123456789abcdefghijklmnopqrstuvwxyz", zlib.crc32(line.encode())
+    return "".join(digits[number // 36**k % 36] for k in range(5))
+
+
 def record(options, outcomes):
-    """Writes the record: each line of words once, then for each deck status, words, a sum of the names and figures."""
-    lines, index, seen, kept, ran, keys = [], {}, set(), [], 0, set()
+    """Writes the record: each line of words once, behind its name; then for each deck status, names of the words, a sum
+    of the names of the figures, and the figures."""
+    lines, seen, kept, ran, keys = {}, set(), [], 0, set()
     schema = read_schema(options)
     for number, outcome in outcomes:
         if outcome.status not in (0, 1, 2):
@@ -188,14 +195,13 @@ def record(options, outcomes):
         ran += outcome.status == 0
         kept.append((number, outcome))
         for line in outcome.words:
-            if line not in index:
-                index[line] = len(lines)
-                lines.append(line)
+            if lines.setdefault(name_of(line), line) != line:
+                raise SystemExit(f"two lines have one name: '{line}' and '{lines[name_of(line)]}'")
     with open(RECORD, "w") as file:
-        file.writelines(f"{line}\n" for line in lines)
+        file.writelines(f"{name} {line}\n" for name, line in sorted(lines.items(), key=lambda item: item[1]))
         file.write("\n")
         for number, outcome in kept:
-            words = ",".join(str(index[line]) for line in outcome.words)
+            words = ",".join(name_of(line) for line in outcome.words)
             names = zlib.crc32("\n".join(outcome.names).encode())
             figures = " ".join(shortest(figure) for figure in outcome.figures)
             file.write(f"{number} {outcome.status} {words} {names} {figures}".strip() + "\n")
@@ -205,10 +211,10 @@ def record(options, outcomes):
 def recorded():
     with open(RECORD) as file:
         lines, _, decks = file.read().partition("\n\n")
-    lines, found = lines.splitlines(), {}
+    lines, found = dict(line.split(" ", 1) for line in lines.splitlines()), {}
     for deck in decks.splitlines():
         number, status, words, names, *figures = deck.split(" ")
-        said = [lines[int(n)] for n in words.split(",") if n]
+        said = [lines[n] for n in words.split(",") if n]
         found[int(number)] = (int(status), said, int(names), [float(figure) for figure in figures])
     return found
 

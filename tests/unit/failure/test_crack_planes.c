@@ -354,8 +354,8 @@ static void cracks_through_softening_points_take_the_fracture_energy_along_diago
       "fracture energy: 100"};
   for (int k = 1; k < 3; ++k) {
     double taken;
-    const double felt = strip_takes(&small, laws[k == 2], "formulation: hybrid", "", k ? 45 : 0, &taken);
-    assert_near(felt, 1, 0.05);
+    const double felt = strip_takes(&small, laws[k == 2], "formulation: hybrid", "", 45, &taken);
+    assert_near(felt, 0.97, 0.05); /* points with small strains have not softened fully */
     assert_near(taken, felt, 0.01);
   }
 }
