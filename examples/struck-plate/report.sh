@@ -1,5 +1,5 @@
 #!/bin/bash
-# Strikes the plate with three formulations and writes the table and pictures of README.md (half a minute on two cores).
+# Strikes the plate with three formulations and writes the table and pictures of README.md (ten seconds of a processor).
 #   report.sh                run everything, then write
 #   report.sh --only-write   write from the results that are there
 . "$(dirname "$0")/../common.sh"
