@@ -23,7 +23,7 @@ def deck(model, path):
         first, last = (next(n for n, line in enumerate(lines) if line.startswith(key)) for key in ("solve:", "watch:"))
         lines[first:last] = ["  - {on: upper, tie: {directions: y}}", "solve: {explicit: {end time: 10 ms, damping: 300 1/s}}"]
         text = "\n".join(line.replace("pull: {reaction of: pull}", "pull: {reaction of: shear}") for line in lines)
-        text = text.replace('force: ["${shear}", 0], history: {ramp to: 3 ms}', "velocity: [6 mm/s, free], history: {ramp to: 1 ms}")
+        text = text.replace('force: ["${shear}", 0], history: {ramp to: 3 ms}', "velocity: [6 mm/s, free], platen: fixed, history: {ramp to: 1 ms}")
     return text
 
 
