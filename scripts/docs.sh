@@ -21,4 +21,8 @@ done
 mkdir -p docs/bars
 $breccia run scripts/bars.yaml --output "$made/bars" > /dev/null
 cp "$made"/bars/pictures/*.png docs/bars/
+mkdir -p docs/beam
+awk '/^```yaml$/{on = 1; next} /^```$/{on = whole = 0} on && /^title: Simply supported beam/{whole = 1} whole' docs/guide.md > "$made/beam.yaml"
+$breccia run "$made/beam.yaml" --output "$made/beam" > /dev/null
+cp "$made"/beam/pictures/*.png docs/beam/
 rm -r "$made"

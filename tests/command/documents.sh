@@ -102,10 +102,10 @@ dam/rock/shake.AT2:$(cat "$work/tree/examples/dam/shake.AT2")dam/rock/points.csv
 
 # The decks that pages show whole are decks.
 awk '/^```yaml$/{on = 1; text = ""; next} /^```$/{if (on && text ~ /(^|\n)body:/) print text > sprintf("%s-%d.yaml", out, ++n); on = 0} on{text = text $0 "\n"}' \
-  out="$work/shown" "$source/README.md" "$source/docs/deck.md" "$source/docs/choosing.md"
+  out="$work/shown" "$source/README.md" "$source/docs/deck.md" "$source/docs/choosing.md" "$source/docs/guide.md"
 for deck in "$work"/shown-*.yaml; do
   [ $((number++ % every)) = 0 ] || continue
-  "$breccia" check "$deck" > "$work/out" 2>&1 || fail "a deck shown by README.md, docs/deck.md or docs/choosing.md is refused: $(cat "$work/out")"
+  "$breccia" check "$deck" > "$work/out" 2>&1 || fail "a deck shown by README.md, docs/deck.md, docs/choosing.md or docs/guide.md is refused: $(cat "$work/out")"
   checks=$((checks + 1))
 done
 
@@ -120,6 +120,14 @@ awk -F, 'function near(a, b, t) {if (a - b > t || b - a > t) bad = 1} NR > 1 {ne
   END {exit bad || NR != 4}' "$work/ground/deep.csv" || fail "ground with K0: $(cat "$work/ground/deep.csv")"
 awk -F, 'NR == 3 && ($4 > 1e-5 || $4 < -1e-5) {bad = 1} END {exit bad || NR != 4}' "$work/ground/moved.csv" || fail "ground with K0: $(cat "$work/ground/moved.csv")"
 checks=$((checks + 5))
+
+# The guide's beam is as stiff as Timoshenko's (50.97 kN/mm), its plates share the load of the jack, and it carries what the page says.
+"$breccia" run "$(grep -l '^title: Simply supported beam' "$work"/shown-*.yaml)" --output "$work/beam" > "$work/out" 2>&1 || fail "the guide's beam: $(cat "$work/out")"
+awk -F, 'NR == 3 {first = -$4 / ($2 * 1)} -$4 > most {most = -$4} END {exit !(first > 0.98 * 50.97 && first < 1.02 * 50.97 && most > 7.5 && most < 7.72)}' "$work/beam/jack.csv" ||
+  fail "the guide's beam: $(cat "$work/beam/jack.csv")"
+sed -n "s/^  load '\(left\|right\|jack\)': \[0, -*\([0-9.]*\), 0\] kN.*, only presses\$/\2/p" "$work/out" |
+  awk '{f[NR] = $1} END {exit !(NR == 3 && f[1] == f[2] && f[1] + f[2] > 0.999 * f[3] && f[1] + f[2] < 1.001 * f[3])}' || fail "the plates of the guide's beam: $(cat "$work/out")"
+checks=$((checks + 3))
 
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"
