@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test pairs test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-toughness bench-bending bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test pairs test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-toughness bench-bending bench-choosing bench-elements bench-report recovery examples docs format check-format asan tsan arm64 debian13 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -77,6 +77,11 @@ bench-toughness: all
 # Plain beams of softening bonds and links beside a cohesive crack; a table of docs/choosing.md; half an hour. ROWS="hybrid mazars": rows with these words, printed.
 bench-bending: all
 	@python3 -B bench/bending.py build/release/breccia docs/choosing.md $(ROWS)
+
+# Bending at high Poisson ratios, strips that crack, pressed prisms, vertical cuts: four tables of docs/choosing.md; a minute of a processor.
+# TABLES="strips cuts": these alone.
+bench-choosing: all
+	@python3 -B bench/choosing.py build/release/breccia docs/choosing.md $(TABLES)
 
 # Elastic bodies at rest beside finite elements of OpenSees; a table of docs/performance.md.
 bench-elements: all
