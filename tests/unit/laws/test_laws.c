@@ -535,7 +535,7 @@ static void plane_stress_holds_where_cracks_stand_open(void **state)
 {
   (void)state;
   static const struct {
-    double strain[6], committed[10];
+    double strain[6], committed[11];
   } cases[] = {
       {{-0.000243212, 0.108388517, 0.244462189, 0.108423694},
        {-0.000217573, 0.108569, 0.244460699, 0.0543345459, 0, 0, 0.0186700, 0.0494696, 0.999142441993}},
