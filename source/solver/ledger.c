@@ -147,7 +147,8 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *un
   return error_add(
       error, BRECCIA_FAILURE,
       "step %lld (time %g %s): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
-      "motions have put in %.4g at most; the time step of %s is too long for what happens, or bonds that break or close "
+      "motions have put in %.4g at most; the time step of %s is too long for what happens, or bonds that break or "
+      "close "
       "give more than they got: choose %s, more zero-energy control, or leave contact out",
       (long long)clock->step, clock->time, clock->time_unit, l->kinetic, internal, fracture, l->paid, step,
       isfinite(clock->stable) ? "a smaller 'safety' or 'time step'" : "a smaller 'time step' or more 'increments'");

@@ -271,9 +271,8 @@ static void check_tells_the_band_over_all_directions(void **state)
   breccia_model_destroy(&m);
   m = body_of_lattice("square", "formulation: hybrid, horizon: 0.2015",
                       "model: mazars, Poisson ratio: 0.2, tensile strength: 1, fracture energy: 0.02", "");
-  holds_words(
-      breccia_model_overview(m),
-      "b: points across a crack take the fracture energy whatever its direction|0.74 to 1 of that across x");
+  holds_words(breccia_model_overview(m),
+              "b: points across a crack take the fracture energy whatever its direction|0.74 to 1 of that across x");
   breccia_model_destroy(&m);
   m = body_of_lattice("square", "formulation: micropolar",
                       "model: link-damage, Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 0.02", "");
@@ -285,9 +284,8 @@ static void check_tells_the_band_over_all_directions(void **state)
                       "model: damage-plasticity, Poisson ratio: 0.2, tensile strength: 1, compressive strength: 10, "
                       "fracture energy: 0.02",
                       "");
-  holds_words(
-      breccia_model_overview(m),
-      "b: points across a crack take the fracture energy whatever its direction|0.74 to 1 of that across x");
+  holds_words(breccia_model_overview(m),
+              "b: points across a crack take the fracture energy whatever its direction|0.74 to 1 of that across x");
   breccia_model_destroy(&m);
 }
 
