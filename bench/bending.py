@@ -221,7 +221,7 @@ def main(program, page, *words):
     if words:
         print("\n".join(lines))
     else:
-        write(page, "bending", lines)
+        write(page, "bending strength", lines)
 
 
 if __name__ == "__main__":

@@ -79,10 +79,10 @@ static bool ground_step_slips_freely(const Domain *d)
 double ground_step_excess(const Domain *d, double spacings)
 {
   /* Measured factors over closed forms (docs/choosing.md) for vertical cuts:
-   *   ordinary families            8, 12, 16 spacings   1.28, 1.25, 1.20
+   *   ordinary families            8 spacings           1.14
    *   control with full stiffness  16 spacings          1.29 or more
    *   control that fades           8, 12, 16 spacings   1.06, 1.04, 1.034
-   * The first two excesses decrease with the square root of the number of spacings at best. */
+   * The first two excesses decrease with the square root of the number of spacings at best, and have one bound. */
   const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.6;
   if (ground_step_slips_freely(d)) return fmin(freely_most, freely_spacings / spacings);
   return most * fmin(1, sqrt(few / spacings));

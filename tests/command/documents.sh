@@ -158,6 +158,13 @@ equal "sections of the guide's deck" "$(grep -c '^[a-z]*:' "$work/guide.yaml")" 
 
 # What a page links to is there.
 cd "$source" || exit 1
+
+# Scripts put tables between marks, of which a page has one of each name.
+for page in docs/*.md examples/*/README.md; do
+  twice=$(grep -o '^<!-- .* -->$' "$page" | sort | uniq -d)
+  [ -z "$twice" ] || fail "$page has these marks twice: $twice"
+  checks=$((checks + 1))
+done
 for page in README.md docs/*.md examples/*/README.md; do
   for target in $(grep -oE '\]\([^)#]+' "$page" | sed 's/^](//' | grep '[.]' | grep -v '^https:'); do
     [ -e "$(dirname "$page")/$target" ] || fail "$page links to $target, which is not there"
