@@ -90,13 +90,15 @@ static int read_load(Search *s, const char *words, double *from, double *to)
 /** Says why there is no verdict on a run. @return status */
 static int refuse_verdict(const Search *s, const Trial *t, const CaseWork *work)
 {
-  if (t->done)
+  /* A run that failed may have written its summary before: its files look like those of a run that came to its end. */
+  const bool ended = t->done && !work->failures;
+  if (ended)
     complain("breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
              "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more",
              t->name);
   else
     complain("breccia failure: %s/%s/log.txt tells more", s->folder, t->name);
-  return t->done || work->refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
+  return ended || work->refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
 }
 
 /** Returns the loads as a key with its values, to be varied; NULL after a message that memory is out. */
