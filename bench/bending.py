@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Measures the bending strength of plain beams over that of a cohesive crack with the same tensile strength, fracture
-energy and softening curve, by depth and number of particle rows. Writes a table of PAGE.
+energy and softening curve, by depth and number of particle rows. Writes the table between the marks `bending strength`
+of PAGE. source/domain/bending_strength.c has a copy of the table, which must follow.
 
   bending.py BRECCIA PAGE          all rows of CASES
-  bending.py BRECCIA PAGE WORDS    the rows that hold these words; printed and not written
+  bending.py BRECCIA PAGE WORDS    the rows that contain these words; printed and not written
 
 A beam on two supports at a distance of three depths carries a force in its middle; the opening of the middle of its
 lower face is controlled (E 30 GPa, f_t 3 MPa, G_F 100 N/m, plane stress). The reference (cohesive_strength) is

@@ -8,9 +8,9 @@
 typedef struct RepeatSpec {
   SectionHead head;
   double along[3], pitch;
-  int64_t number; /* of lines with the first; -1: 'over' is given */
+  int64_t number; /* number of lines, the first included; -1: 'over' is given */
   double over;    /* length from the first line to the end; NaN: 'number' is given */
-  int last_gap;   /* number of its word: what comes where `over` is no multiple of the pitch */
+  int last_gap;   /* index of its word: spacing of the last lines where `over` is no multiple of the pitch */
 } RepeatSpec;
 
 extern const Section repeat_section;

@@ -8,7 +8,7 @@
 typedef struct BlockSpec {
   SectionHead head;
   const char *material;
-  int lattice; /* its number (lattice_at) */
+  int lattice; /* index of its type (lattice_at) */
   double spacing, thickness, area;
   Shape *shape; /* NULL: particles come from a file */
   const char *file;

@@ -41,6 +41,7 @@ typedef struct Lattice {
 
 /** Names of the lattices one by one, NULL after the last. */
 const char *lattice_word(int k);
+/** Returns the lattice type of an index of lattice_word. */
 const LatticeType *lattice_at(int k);
 /** @return NULL if there is none of that name */
 const LatticeType *lattice_find(const char *name);

@@ -8,7 +8,7 @@
 typedef struct SelectionSpec {
   SectionHead head;
   const char *block, *group;
-  int face; /* 2 * axis, + 1 where it faces upwards; -1: none */
+  int face; /* 2 * axis, + 1 if its outward normal points along the axis; -1: none */
   int64_t layers;
   Shape *inside;
   double nearest[3];
@@ -18,11 +18,13 @@ typedef struct SelectionSpec {
 
 extern const Section selection_section;
 
-/** Axis of the face, from 0; and 1 where it looks upwards along the axis, else -1. Only where a face is given. */
+/** Returns the axis of the face, from 0, if `face` is given. */
 static inline int selection_axis(const SelectionSpec *spec)
 {
   return spec->face / 2;
 }
+
+/** Returns the sign of the outward normal of the face along its axis, 1 or -1, if `face` is given. */
 static inline int selection_side(const SelectionSpec *spec)
 {
   return spec->face % 2 ? 1 : -1;

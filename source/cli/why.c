@@ -8,7 +8,7 @@ enum { BOND, FIRST, COUNT };
 
 static const Option options[] = {
     {"bond", "A,B", "only the bond between these two particles, numbered by their rows in the result file, from 0"},
-    {"first", "N", "list the first N broken bonds, and up to 10 of the most damaged ones (10)"},
+    {"first", "N", "list the first N broken bonds and the N most damaged ones, of these 10 at most (10)"},
     {0},
 };
 

@@ -14,7 +14,7 @@ typedef struct StageSpec {
 
 typedef struct TestSpec {
   SectionHead head;
-  int kind, zero;                           /* numbers of test_kind_word and test_zero_word */
+  int kind, zero;                           /* indices of test_kind_word and test_zero_word */
   double strain, back, confining, duration; /* duration: NaN: at once */
   int64_t cycles, steps;
 } TestSpec;

@@ -87,11 +87,12 @@ double material_young(const Material *material);
 double material_poisson(const Material *material);
 /** Returns true if two materials have equal initial moduli up to round-off. */
 bool material_is_as_stiff(const Material *one, const Material *other);
-/** Returns true if no strain is too large for the law: it neither yields, softens nor breaks. */
+/** Returns true if the law is linear or viscoelastic without a failure strain: it neither yields, softens nor
+ *  breaks. */
 bool material_is_unlimited(const Material *material);
-/** Returns the share of a bond that the material of one end has beside the material of the other end: half. Of two
- *  materials of equal moduli one of which is unlimited the other one has the whole bond: the half of the unlimited one
- *  would carry on where the other half has yielded or cracked. */
+/** Returns the share of a bond that follows the material of one end: 0.5, or 1 and 0 if the moduli of both materials
+ *  are equal and one of the materials is unlimited. The bond then follows the limited material alone, because an
+ *  unlimited half would carry on after the other half has yielded or cracked. */
 double material_share_of_bond(const Material *own, const Material *other);
 /** Whether the law tells how stress changes with strain, asked of an unstrained point; that of a server is taken to do so, as is one that cannot be
  *  integrated there. */

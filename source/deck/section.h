@@ -62,7 +62,7 @@ typedef enum FieldKind {
   FIELD_FLAG,              /* bool */
   FIELD_TEXT,              /* const char * */
   FIELD_NAME,              /* const char *: the name of something that the deck defines elsewhere */
-  FIELD_CHOICE,            /* int: number of one of its words; -1 when optional and absent */
+  FIELD_CHOICE,            /* int: index of one of its words; -1 when optional and absent */
   FIELD_POINT,             /* double[3]; a third component left out is 0; NaN when optional and absent */
   FIELD_FREE_POINT,        /* the same, where the word 'free' makes a component NaN */
   FIELD_COUNTS,            /* int64_t[3]; a third left out is 1; -1 when optional and absent */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Depths over E G_F / f_t^2 of the measured beams. */
+/* Depths of the measured beams over E G_F / f_t^2. */
 enum { BENDING_DEPTHS = 3 };
 static const double bending_depths[BENDING_DEPTHS] = {0.3, 0.6, 1.2};
 
@@ -14,8 +14,9 @@ typedef struct BendingRow {
   double factor[BENDING_DEPTHS]; /* bending strength over that of a cohesive crack, by depth */
 } BendingRow;
 
-/* Measured by bench/bending.py at the default horizon of each formulation, in plane stress: square lattices, bonds with
- * `surface correction: energy`, links in a hexagonal lattice. Rows of one law in ascending order. */
+/* Copy of the table "Bending strength" of docs/choosing.md, which bench/bending.py writes: default horizon of each
+ * formulation, plane stress, square lattices, bonds with `surface correction: energy`. The entries of a law are in
+ * ascending order of `rows`. */
 static const BendingRow bending_rows[] = {
     {"bond-based", "exponential-softening", 10, {1.09, 1.03, 0.99}},
     {"bond-based", "exponential-softening", 20, {1.19, 1.20, 1.03}},
@@ -29,16 +30,16 @@ static const BendingRow bending_rows[] = {
 
 enum { BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows };
 
-/** Tensile strength of a strip of links along the rows of its lattice, over E times the `tensile stretch`. */
+/** Tensile strength of a strip of links, pulled along the rows of its lattice, over E times the `tensile stretch`. */
 typedef struct LinkRow {
   const char *lattice;
   double factor;
 } LinkRow;
 
-/* Measured on strips of 12 rows whose ends are stronger by half. */
+/* Measured on strips of 12 rows whose ends have 1.5 times the strength. */
 static const LinkRow link_rows[] = {{"square", 1.19}, {"hexagonal", 1.29}};
 
-/** Returns the factor of a measured number of rows at a depth, linear in the logarithm of the depth. */
+/** Returns the factor of a table entry at a depth over E G_F / f_t^2, linear in the logarithm of the depth. */
 static double bending_at_depth(const BendingRow *row, double depth)
 {
   if (!(depth > bending_depths[0])) return row->factor[0];
@@ -68,8 +69,9 @@ double bending_factor(const char *formulation, const char *law, double rows, dou
   return below ? bending_at_depth(below, depth) : NAN;
 }
 
-/** Finds the shortest and the longest side of a block [length], each with the spacing that its outer particles stand
- *  for. @return the first slice of the block; -1: none */
+/** Finds the shortest and the longest side of a block [length]: the distance of its outermost particles and one
+ *  spacing.
+ *  @return index of the first SIMD block of the block; -1: it has no particles */
 static int64_t bending_sides(const Domain *d, int block, double *shortest, double *longest)
 {
   const Particles *p = d->particles;
@@ -108,7 +110,7 @@ static void bending_describe_block(const Domain *d, int block, const Region *reg
   text_add(
       text,
       "%s: a beam of %.0f rows, %.2g E G_F/f_t^2 deep, carries %.2f times the bending strength of a cohesive crack "
-      "with its numbers (measured at the default horizon in plane stress)\n",
+      "of the same f_t, G_F and softening curve (measured at the default horizon in plane stress)\n",
       d->body.blocks[block]->head.name, rows, depth / length, factor);
 }
 
@@ -119,7 +121,7 @@ static void link_describe_block(const Domain *d, int block, Text *text)
     if (!strcmp(link_rows[k].lattice, d->body.lattices[block].type->name))
       text_add(text,
                "%s: a strip of these links pulled along its rows carries %.2f times E times the 'tensile stretch' "
-               "(measured); give the stretch less that\n",
+               "(measured); divide the stretch of the deck by this factor\n",
                d->body.blocks[block]->head.name, link_rows[k].factor);
 }
 

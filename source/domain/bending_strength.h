@@ -1,14 +1,15 @@
-/* Bending strength of beams, and tensile strength of lattices of links, over what their deck asks for: factors measured
- * with this program, for the material and lattice of each block. */
+/* Bending strength of beams over that of a cohesive crack, and tensile strength of lattices of links over that of their
+ * deck: factors measured with this program, by formulation, law and number of particle rows. */
 #ifndef BRECCIA_DOMAIN_BENDING_STRENGTH_H
 #define BRECCIA_DOMAIN_BENDING_STRENGTH_H
 
 #include "domain/domain.h"
 
 /** Measured bending strength of a beam over that of a cohesive crack with the same strength, energy and softening curve.
- *  @param[in] rows    particles over the depth
+ *  @param[in] rows    number of particle rows over the depth
  *  @param[in] depth   depth of the beam over E G_F / f_t^2
- *  @return factor between measured rows and depths, the nearest one beyond them; NaN: not measured */
+ *  @return factor, interpolated in the logarithms of rows and depth, and constant outside the measured range; NaN: the
+ *          law was not measured */
 double bending_factor(const char *formulation, const char *law, double rows, double depth);
 
 /** Adds a line for each block that is at least twice as long as deep, with the measured factor of its bending strength,

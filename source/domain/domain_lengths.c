@@ -1,8 +1,8 @@
-/* Lengths over which points spread a fracture energy where the length depends on more than the formulation
+/* Lengths over which points spread a fracture energy where the formulation alone does not determine them
  * (constitutive/normal_lengths.h).
- * - Points on lattice bonds: on the crack normal. The length of a material is the mean over its lattice blocks of the
- *   lengths that FormulationType.crack_length finds.
- * - Points on particles: on the brittleness of the material, by FormulationType.softening_length. */
+ * - Points on lattice bonds: the length depends on the crack normal. The length of a material is the mean of
+ *   FormulationType.crack_length over its lattice blocks.
+ * - Points on particles: the length depends on the brittleness of the material (FormulationType.softening_length). */
 #include "base/memory.h"
 #include "constitutive/normal_lengths.h"
 #include "domain/regions.h"
@@ -13,7 +13,7 @@
 struct MaterialLengths {
   const Domain *domain;
   int material;
-  double fixed; /* length for all normals; 0: by the lattice */
+  double fixed; /* length for all crack normals [length]; 0: the length depends on normal and lattice */
 };
 
 static double lengths_across(const void *context, const double normal[3])
@@ -44,7 +44,7 @@ static bool lengths_are_known(const Region *region)
   return region->points.on_bonds ? region->type->crack_length != NULL : region->type->softening_length != NULL;
 }
 
-/** Returns the length of a material with points on particles by its brittleness; 0: lengths follow from lattices. */
+/** Returns the length of a material with points on particles [length]; 0: points are on bonds. */
 static double lengths_of_particles(const Domain *d, const Material *m, Space space)
 {
   const Region *region = &d->regions[0];

@@ -378,7 +378,7 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
   return BRECCIA_OK;
 }
 
-/** Laws of one strain may say that there is stress at no strain, which stores energy before anything acts. */
+/** Sets the energy stored at the start: uniaxial laws may have stress at zero strain. */
 static int store_by_laws(Domain *d)
 {
   bool may = false;

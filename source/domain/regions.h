@@ -28,8 +28,9 @@ int domain_create_materials(Domain *domain, const DeckReader *reader, const Doma
 int region_create_points(Domain *domain, Region *region, Space space, bool may_give_up, const BondLength *of,
                          Error *error);
 
-/** Sets the lengths of points (domain_lengths.c) in laws that take lengths by crack normal, if the formulations of all
- *  regions find such lengths. A length in the deck takes precedence. Called after formulations are created. */
+/** Sets the lengths over which points spread a fracture energy (domain_lengths.c) in laws that accept such lengths, if
+ *  the formulations of all regions find them. A `length` in the deck takes precedence. Called after formulations are
+ *  created. */
 int domain_find_lengths(Domain *domain, Space space, Error *error);
 
 /** Windows for a region whose bonds do not break, where they take less than half of what sums of all slices do. Its formulation is made. */

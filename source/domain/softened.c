@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Damage below which a point counts as whole, and above 1 less which it carries nothing: round-off of laws. */
+/* Round-off of damage: a point is damaged above this value, and carries nothing above 1 less this value. */
 static const double softened_round_off = 1e-9;
 
 /** Returns true if a history number of a material is a damage. */
@@ -33,7 +33,7 @@ static bool softened_is_worse(const SoftenedPoint *a, const SoftenedPoint *b)
   return a->particles[0] != b->particles[0] ? a->particles[0] < b->particles[0] : a->particles[1] < b->particles[1];
 }
 
-/** Counts a point, and lists the point if it is among the most damaged ones. */
+/** Counts a point, and inserts it into the list of the most damaged ones if it belongs there. */
 static void softened_take(SoftenedPoints *found, const SoftenedPoint *point)
 {
   ++found->total;
@@ -48,6 +48,7 @@ static void softened_take(SoftenedPoints *found, const SoftenedPoint *point)
   found->worst[at] = *point;
 }
 
+/** Returns the elongation of a bond [length]. */
 static double softened_opening(const Particles *p, int64_t place, const Bond *bond)
 {
   double length = 0;
@@ -58,8 +59,8 @@ static double softened_opening(const Particles *p, int64_t place, const Bond *bo
   return sqrt(length) - bond->length;
 }
 
-/** Returns the damage of an intact bond: of points on bonds the larger one of both rows, of links that of the
- *  formulation; NaN if neither is there. */
+/** Returns the damage of an intact bond: the larger damage of its one or two points, or the damage that a formulation
+ *  without points stores; NaN if the bond has neither. */
 static double softened_of_bond(const Domain *d, const Region *region, int64_t slice, int64_t slot, int lane)
 {
   if (!region->points.components)
@@ -70,7 +71,7 @@ static double softened_of_bond(const Domain *d, const Region *region, int64_t sl
   return rows[1] == rows[0] ? first : fmax(first, softened_of_row(&region->points, rows[1]));
 }
 
-/** Takes the bonds of a place to places with higher numbers. */
+/** Counts the intact bonds of a particle to particles with higher numbers. */
 static void softened_take_bonds(const Domain *d, const Region *region, int64_t place, SoftenedPoints *found)
 {
   const Particles *p = d->particles;
@@ -91,6 +92,7 @@ static void softened_take_bonds(const Domain *d, const Region *region, int64_t p
   }
 }
 
+/** Counts the material point of a particle. */
 static void softened_take_particle(const Domain *d, const Region *region, int64_t place, SoftenedPoints *found)
 {
   const Particles *p = d->particles;
@@ -102,7 +104,7 @@ static void softened_take_particle(const Domain *d, const Region *region, int64_
   softened_take(found, &point);
 }
 
-/** Returns true if a material of a domain may be damaged. */
+/** Returns true if a law of the body has a damage among its history numbers. */
 static bool softened_may_be(const Domain *d)
 {
   for (int k = 0; k < d->material_count; ++k)

@@ -14,7 +14,7 @@ typedef struct CriticalStretchSpec {
 const CriticalStretchSpec *critical_stretch_spec(const FailureSpec *failure);
 
 /** Returns the critical stretch of a material with which cracks take a fracture energy: in the mean over all planes of
- *  its lattice, or by the integrals of a continuum, as for particles that stand in no lattice.
+ *  its lattice, or by the integrals of a continuum, which also serve particles outside a lattice.
  *  @param[in] material  index of the material in of->materials */
 double critical_stretch_of(const LimitsOf *of, int material, double energy, FailureCalibration calibration);
 

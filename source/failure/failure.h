@@ -8,10 +8,10 @@
 
 typedef struct FailureSpec {
   SectionHead head;
-  int criterion;       /* its number (criterion_at) */
+  int criterion;       /* its index (criterion_at) */
   void *keys;          /* the struct of the criterion's own section */
   int failed_laws;     /* FailedLaws */
-  int near_grips;      /* NearGrips; -1: not said, bonds break */
+  int near_grips;      /* NearGrips; -1: not given, bonds break */
   SectionList nowhere; /* of NoFailureSpec: where no bond breaks */
 } FailureSpec;
 
@@ -23,14 +23,14 @@ typedef struct NoFailureSpec {
 
 extern const Section failure_section;
 
-/** What happens where a law cannot be integrated. */
+/** Consequence of a law that cannot be integrated: the run stops, or the bonds of the particle break. */
 typedef enum FailedLaws { FAILED_LAWS_STOP, FAILED_LAWS_BREAK } FailedLaws;
-/** What bonds near moved particles do beyond their limit. */
+/** Bonds near particles that loads move, beyond their limit: they break, or hold. */
 typedef enum NearGrips { NEAR_GRIPS_BREAK, NEAR_GRIPS_HOLD } NearGrips;
-/** How criteria find their limit from a fracture energy. */
+/** Computation of a limit from a fracture energy: by the lattice at hand, or by the integrals of a continuum. */
 typedef enum FailureCalibration { CALIBRATED_ON_LATTICE, CALIBRATED_ON_CONTINUUM } FailureCalibration;
 
-/* How criteria find their limit from a fracture energy: a key of each of them. */
+/* Words and meaning of the key `calibration`, which each criterion with a fracture energy has. */
 #define FAILURE_CALIBRATIONS                                                                                           \
   (const char *const[])                                                                                                \
   {                                                                                                                    \

@@ -7,7 +7,7 @@ typedef struct Influence {
   double (*value)(double q, double length);
 } Influence;
 
-/** Influence functions by their numbers in the deck. */
+/** Indices of the influence functions, in the order of influence_word. */
 enum {
   INFLUENCE_CONSTANT,
   INFLUENCE_CONICAL,
@@ -17,6 +17,7 @@ enum {
   INFLUENCE_QUARTIC,
   INFLUENCE_CUBIC_SPLINE
 };
+/** Returns the influence function of an index. */
 const Influence *influence_at(int k);
 /** k-th name, for the deck. */
 const char *influence_word(int k);

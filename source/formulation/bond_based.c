@@ -13,7 +13,7 @@
 
 typedef struct BondBasedSpec {
   SectionHead head;
-  int calibration, surface_correction, strength_of; /* numbers of their words */
+  int calibration, surface_correction, strength_of; /* indices of their words */
 } BondBasedSpec;
 
 enum { SURFACE_AS_IS, SURFACE_BY_ENERGY };

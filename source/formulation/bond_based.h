@@ -120,7 +120,8 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
 void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
                  double change[3]);
 
-/** Share of a bond between two slices that the law of the first one has. */
+/** Returns the share of a bond that follows the material of its own SIMD block (material_share_of_bond); 0.5 if the
+ *  other end belongs to another region. */
 static inline double bond_share(const BondBased *b, int64_t slice, int64_t other)
 {
   const int32_t own = b->material[slice], there = b->material[other];

@@ -345,6 +345,7 @@ FormerBonds correspondence_former_bonds(const void *formulation)
   return (FormerBonds){.share = 0.8, .alike = false};
 }
 
+/** Returns the width of the band of particles that soften along a plane crack [length]. */
 static double correspondence_band(Space space, double horizon)
 {
   return (space == SPACE_3D ? 1.75 : 2) * horizon;
@@ -355,12 +356,14 @@ double correspondence_characteristic_length(const BondLength *of)
   return correspondence_band(of->space, of->horizon);
 }
 
-/* Points beside the band soften, too, where the softening zone of the material is short. With the band's width
- * b = 2 delta for the length, a notched strip opened by a wedge (bench/toughness.py, mazars, plane stress, 3.015
- * spacings) takes 1.44, 1.34, 1.19, 1.08 and 0.95 of G_F at l / delta = 1.2, 1.4, 2, 2.8 and 5.5. Other lengths L take
- * (b / L)^0.57 of that. So
- *   L = b max(1, 0.89 + 0.45 (b / l)^2), at most 1.94 l,
- * because a longer length than 2 l stores more at the peak than G_F. The limit is reached at l = 1.63 delta. */
+/* Points beside the band soften, too, where the softening zone of the material, l = E G_F / f_t^2, is short. A notched
+ * strip opened by a wedge (bench/toughness.py, mazars, plane stress, 3.015 spacings) takes, if the length L is the
+ * width of the band, b = 2 delta:
+ *   l / delta   1.2   1.4   2     2.8   5.5
+ *   of G_F      1.44  1.34  1.19  1.08  0.95
+ * Other lengths L take (b / L)^0.57 of that. Hence
+ *   L = b max(1, 0.89 + 0.45 (b / l)^2), but at most 1.94 l and at least b.
+ * The upper bound acts below l = 1.63 delta: over more than 2 l a point would store more than G_F at its peak. */
 double correspondence_softening_length(Space space, double horizon, double ductility)
 {
   const double band = correspondence_band(space, horizon), brittle = band / ductility;

@@ -10,7 +10,7 @@
 
 typedef struct PeridynamicsSpec {
   SectionHead head;
-  int formulation, space, influence, volume_correction; /* numbers of their words */
+  int formulation, space, influence, volume_correction; /* indices of their words */
   Length horizon;
   void *keys;          /* the struct of the formulation's own section */
   SectionList regions; /* of RegionSpec */
@@ -20,7 +20,7 @@ typedef struct PeridynamicsSpec {
 typedef struct RegionSpec {
   SectionHead head;
   TextList blocks;
-  int formulation; /* number of its word */
+  int formulation; /* index of its word */
   void *keys;
 } RegionSpec;
 
@@ -32,7 +32,7 @@ Space peridynamics_space(const PeridynamicsSpec *spec);
 /** The horizon of the deck, or where it gives none the longest that its formulations want. */
 Length peridynamics_horizon(const PeridynamicsSpec *spec);
 
-/** Measures of strain that laws of six components take, in the order of strain_measure_words. */
+/** Strain measures of 3-D laws, in the order of strain_measure_words. */
 typedef enum StrainMeasure { STRAIN_GREEN_LAGRANGE, STRAIN_SMALL } StrainMeasure;
 extern const char *const strain_measure_words[];
 
@@ -224,7 +224,7 @@ struct FormulationType {
   /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
   double (*history)(const void *formulation, int64_t place, int k);
   /** Committed damage of an intact bond, 0 to 1, of formulations that store the damage of bonds without points. NULL:
-   * bonds have no such damage. */
+   *  bonds have no such damage. */
   double (*bond_damage)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
@@ -260,9 +260,9 @@ struct FormulationType {
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
-  /** Length over which points of a law that softens must spread G_F, so that running cracks take G_F [length]. NULL:
-   *  the characteristic length, whatever the law.
-   *  @param[in] ductility  l = E G_F / f_t^2 [length] */
+  /** Length over which points on particles must spread G_F so that running cracks take G_F [length]. NULL: the
+   *  characteristic_length, whatever the law.
+   *  @param[in] ductility  Hillerborg's characteristic length of the material, l = E G_F / f_t^2 [length] */
   double (*softening_length)(Space space, double horizon, double ductility);
   /** Length l over which a plane crack with that normal spreads a fracture energy in the lattice of a block: if all
    * bonds across it break at a stretch s, and nothing else is strained, they take E l s^2 / 2 per area. NULL: unknown.

@@ -12,7 +12,7 @@
 
 typedef struct HybridSpec {
   SectionHead head;
-  int form, strain; /* number of its word; StrainMeasure */
+  int form, strain; /* index of its word; StrainMeasure */
   double own;
 } HybridSpec;
 

@@ -353,8 +353,8 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   }
 }
 
-/** Returns the part of the material of a listed row in its section and volume: in those of a laminate, or in those of
- *  one of two halves. */
+/** Returns the factor of section and volume of a listed point: the fraction of its material in a laminate, or twice its
+ *  share of the bond (material_share_of_bond) if the other end has a point of its own, or 1. */
 static double part_of(const Hybrid *h, const HybridRow *at, int64_t number, const HybridLaminate *laminate)
 {
   int64_t rows[2];
@@ -365,7 +365,7 @@ static double part_of(const Hybrid *h, const HybridRow *at, int64_t number, cons
                       : 2 * material_share_of_bond(points_material(h->points, own), points_material(h->points, other));
 }
 
-/** Reduces section and volume of a bond to a part of them. @return false if that part is empty */
+/** Multiplies section and volume of a point by a factor. @return false if the factor is 0 */
 static bool take_part(Hybrid *h, int64_t number, double part)
 {
   h->volume[number] *= part;

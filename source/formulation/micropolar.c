@@ -11,7 +11,7 @@
 
 typedef struct MicropolarSpec {
   SectionHead head;
-  int kinematics; /* number of its word */
+  int kinematics; /* index of its word */
   double torsion;
 } MicropolarSpec;
 

@@ -197,7 +197,8 @@ void micropolar_weaken(const Micropolar *m, int64_t place, int64_t other, int64_
 void micropolar_state(void *formulation, const char *part, StateList *list);
 void micropolar_commit(void *formulation, bool well);
 double micropolar_history(const void *formulation, int64_t place, int k);
-/** FormulationType.bond_damage: the larger one of the damage in tension and the damage in compression of a link. */
+/** Implements FormulationType.bond_damage: the larger of the damage in tension and the damage in compression of a
+ *  link. */
 double micropolar_link_damage(const void *formulation, int64_t slice, int64_t slot, int lane);
 size_t micropolar_damage_bytes(const Micropolar *m);
 

@@ -17,7 +17,7 @@ static double crossing(const Micropolar *m, int block, const double n[3])
   for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
     const LinkRow *row = &m->rows[k];
     const double length = m->family->patterns[k].length, cosine = fabs(vector_dot(row->n, n));
-    if (cosine < 1e-6 || !(row->axial > 0)) continue; /* it lies in the plane, or its influence is 0 */
+    if (cosine < 1e-6 || !(row->axial > 0)) continue; /* the link lies in the plane, or its influence is 0 */
     const double tangent = (1 - cosine * cosine) / (cosine * cosine);
     sum += row->axial * length * length * cosine * (1 + 12 * row->bending / (row->axial * length) * tangent);
   }

@@ -10,7 +10,7 @@
 
 typedef struct OrdinarySpec {
   SectionHead head;
-  int weights; /* number of its word */
+  int weights; /* index of its word */
 } OrdinarySpec;
 
 enum { WEIGHTS_ISOTROPIC, WEIGHTS_PLAIN };

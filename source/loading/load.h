@@ -33,7 +33,7 @@ typedef struct LoadSpec {
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
   double area, centre[3];
-  int spread, platen; /* LoadSpread, LoadPlaten; -1: not said */
+  int spread, platen; /* LoadSpread, LoadPlaten; -1: not given */
   bool only_presses;
 } LoadSpec;
 

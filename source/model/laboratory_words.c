@@ -59,7 +59,7 @@ int laboratory_read_path(breccia_test *test, const char *path, Error *error)
                        : error_add(error, BRECCIA_USER_ERROR, "%s: has no row of strains", path);
 }
 
-/** Number of a word of the command line among those of a table; -1: it is none of them. */
+/** Returns the index of a word of the command line in a list of words; -1: the list lacks the word. */
 static int number_of_word(const char *(*word)(int k), const char *given)
 {
   for (int k = 0; word(k); ++k)

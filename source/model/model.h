@@ -53,7 +53,7 @@ struct breccia_model {
   int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
   Compressions compressions;
-  Text thin_layers; /* last words of a run on layers that carry more than their strength */
+  Text thin_layers; /* warnings of thin layers for the last words of a run (plausibility_thin.c) */
   double run_seconds;
   int64_t run_steps;
   const volatile int *interrupted; /* of breccia_options */

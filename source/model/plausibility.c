@@ -167,8 +167,9 @@ static void check_bond_strength(breccia_model *model, const Material *m)
 
 /** Warns where the zone in which a crack softens is too short for correspondence. Measured with 'mazars' in the notched
  *  strip of bench/toughness.py, plane stress, horizons of 3.015 spacings. With the length by brittleness
- *  (FormulationType.softening_length) cracks take G_F down to l = E G_F / f_t^2 of 1.63 horizons, and 1.2 G_F at 1.4.
- *  With the length of the formulation they take 1.34, 1.19, 1.08 and 0.95 G_F at 1.4, 2, 2.8 and 5.5 horizons. */
+ *  (FormulationType.softening_length) cracks take G_F down to l = E G_F / f_t^2 of 1.63 horizons, and 1.2 G_F at 1.4
+ *  horizons. With the length of the formulation alone they take 1.3 G_F at 1.4 and 1.1 G_F at 2.8 horizons
+ *  (correspondence_setup.c has all measured values). */
 static void check_brittleness(breccia_model *model, const Material *m, const Region *region)
 {
   const Space space = peridynamics_space(model->spec->peridynamics);

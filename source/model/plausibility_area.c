@@ -1,11 +1,10 @@
 /* Areas of loaded faces that do not fit the particles on which the load acts.
  *
  * The volume V of the particles of a load is about their area times their depth. The depth is the distance of their
- * outermost centres along the normal of the face, and up to one spacing more: all of it on lattices, about half of it
- * for particles that stand anywhere. The normal is that of the face that the deck names, the direction from the axis of
- * a round surface, or the axis along which the particles are thinnest by far. If there is no such axis, only areas
- * are told that fit no face of these particles: larger than V over a spacing, or smaller than V over their greatest
- * depth. */
+ * outermost centres along the normal of the face, and up to one spacing more: a whole spacing on lattices, about half
+ * of one for scattered particles. The normal is that of the face that the deck names, the direction from the axis of a
+ * round surface, or the axis along which the particles are thinnest by far. If there is no such axis, the areas of
+ * their faces lie between V over their greatest depth and 1.5 V over a spacing. */
 #include "model/plausibility_parts.h"
 
 #include "loading/load/radial_pressure.h"
@@ -13,13 +12,14 @@
 #include <math.h>
 #include <string.h>
 
-static const double area_factor = 1.5; /* by which an area differs from that of the particles before it is told */
+static const double area_factor = 1.5; /* smallest reported ratio of an area to that of the particles, or its inverse */
 
-/** Range of areas that the particles of a load may stand for. */
+/** Range of areas of the faces that the particles of a load may represent. */
 typedef struct AreaRange {
   double low, high;
 } AreaRange;
 
+/** Returns the largest spacing among the particles of a load [length]. */
 static double area_spacing(const Domain *d, const Load *load)
 {
   double spacing = 0;
@@ -28,7 +28,7 @@ static double area_spacing(const Domain *d, const Load *load)
   return spacing;
 }
 
-/** Returns the distance of the outermost particles of a load along an axis. */
+/** Returns the distance of the outermost particles of a load along an axis [length]. */
 static double area_extent(const Particles *p, const Load *load, int axis)
 {
   double low = INFINITY, high = -INFINITY;
@@ -39,17 +39,18 @@ static double area_extent(const Particles *p, const Load *load, int axis)
   return high - low;
 }
 
-/** Returns the areas of particles of a volume and a distance of their outermost centres along the normal. */
+/** Returns the range of areas of particles by their volume and the distance of their outermost centres along the
+ *  normal. */
 static AreaRange area_across(double volume, double extent, double spacing)
 {
-  const double least = 0.7; /* [spacings] depth of one layer of the densest lattices and of scattered particles */
+  const double least = 0.7; /* [spacings] depth of one layer of the densest lattices or of scattered particles */
   return (AreaRange){volume / (extent + spacing), volume / fmax(extent, least * spacing)};
 }
 
-/** Returns the areas of the particles of a load on a face whose normal is unknown. */
+/** Returns the range of areas of the particles of a load on a face whose normal is unknown. */
 static AreaRange area_of_patch(const Domain *d, const Load *load, double spacing)
 {
-  const double flat = 0.5, steep = 1.5; /* depth of a flat patch over its next extent; area of stairs per layer */
+  const double flat = 0.5, steep = 1.5; /* depth of a flat patch over its next extent; area of steps over a layer's */
   double extent[3] = {INFINITY, INFINITY, INFINITY};
   for (int k = 0; k < d->body.dimensions; ++k) { /* in ascending order */
     double next = area_extent(d->particles, load, k);
@@ -66,7 +67,7 @@ static AreaRange area_of_patch(const Domain *d, const Load *load, double spacing
                      steep * load->volume / spacing};
 }
 
-/** Returns the areas of the particles of a load on a round surface. */
+/** Returns the range of areas of the particles of a load on a round surface. */
 static AreaRange area_of_round(const Domain *d, const Load *load, double spacing)
 {
   double low = INFINITY, high = -INFINITY;
@@ -79,6 +80,7 @@ static AreaRange area_of_round(const Domain *d, const Load *load, double spacing
   return area_across(load->volume, high - low, spacing);
 }
 
+/** Warns of an area outside a range. */
 static void area_say(breccia_model *model, const Node *node, double area, AreaRange of)
 {
   const double there = area < of.low ? of.low : of.high;
@@ -86,9 +88,9 @@ static void area_say(breccia_model *model, const Node *node, double area, AreaRa
   units_name(model->units, dimension_find("area"), unit, sizeof unit);
   plausibility_say(
       model, node,
-      "area: %.4g %s, but the volumes of the particles on which the load acts make a face of %.4g %s, %.3g "
-      "times %s; give the area of the face, or select the particles behind all of it",
-      area, unit, there, unit, area < there ? there / area : area / there, area < there ? "more" : "less");
+      "area: %.4g %s, but the volumes of the particles on which the load acts make a face of %.4g %s, %s by a "
+      "factor of %.3g; give the area of the face, or select the particles behind all of it",
+      area, unit, there, unit, area < there ? "larger" : "smaller", area < there ? there / area : area / there);
 }
 
 void plausibility_warn_of_area(breccia_model *model, const Load *load)

@@ -55,7 +55,7 @@ void plausibility_describe_pressing(const breccia_model *model, const Load *load
 /** Adds a line if only one-sided supports hold the body in the current stage. */
 void plausibility_describe_lift(const breccia_model *model, Text *text);
 
-/** Warns of a load whose area is not that of the particles on which it acts (plausibility_area.c). */
+/** Warns if the `area` of a load does not fit the particles on which it acts (plausibility_area.c). */
 void plausibility_warn_of_area(breccia_model *model, const Load *load);
 
 /** Warns where ground begins under stresses that nothing balances, or that its law does not bear. */
@@ -72,8 +72,7 @@ void plausibility_warn_of_supports(breccia_model *model);
 
 /** Warns of layers of another stiffness that bonds reach across. */
 void plausibility_warn_of_layers(breccia_model *model);
-/** Warns of layers that yield, soften or break, between blocks that do not, if bonds of these blocks bridge them
- *  (plausibility_thin.c). */
+/** Warns of thin layers that can fail, between blocks that cannot (plausibility_thin.c). */
 void plausibility_warn_of_thin_layers(breccia_model *model);
 /** Adds a line on each region in which one of two materials that meet acts thinner than it is. */
 void plausibility_describe_layers(const breccia_model *model, Text *text);

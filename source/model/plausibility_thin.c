@@ -1,11 +1,11 @@
-/* Thin layers of materials that yield, soften or break, between blocks of materials that do not.
+/* Warnings of thin layers: layers of materials that yield, soften or break, between blocks of unlimited materials
+ * (material_is_unlimited) whose bonds do not break.
  *
- * A bond between two materials follows one of them, or half of each. Bonds of the blocks on both sides that reach
- * across all gaps between the rows of a layer carry on when the layer has failed, so that its strength grows without a
- * limit.
- * The thickness of a layer is measured along the normal of the interface, from particles of one block to the next
- * block of a material without a limit. The number of rows that a layer wants was measured (docs/choosing.md, layers of
- * little strength). */
+ * Bonds of the blocks on both sides that reach across all gaps between the rows of a layer carry on when the layer has
+ * failed, so that the force on the layer grows without a limit.
+ * The thickness of a layer is measured along the normal of the interface, from the particles of one block to the next
+ * unlimited block. The number of rows that a layer needs was measured (docs/choosing.md, "Layers of little
+ * strength"). */
 #include "model/plausibility_parts.h"
 
 #include "base/memory.h"
@@ -15,45 +15,47 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THIN_STEPS = 10 }; /* per spacing along the normal */
+enum { THIN_STEPS = 10 }; /* number of steps per spacing along the normal */
 
-/** Largest number of bridged rows of which a layer of one more row is right after the peak, too, in hybrid bonds. */
+/** Horizon in whole spacings up to which a layer of hybrid bonds needs no additional row behind the peak. */
 static const int thin_few_rows = 2;
 
-/** A thin layer: the block of the layer, the blocks on both sides, rows of particles that it has and that it wants. */
+/** A thin layer: index of its block, indices of the blocks on both sides, number of rows that it has and that it
+ *  needs. */
 typedef struct ThinLayer {
   int block, ends[2];
   int rows, wanted;
 } ThinLayer;
 
-/** Returns true if nothing limits the stress of a place: neither its law nor a criterion of bonds. */
+/** Returns true if neither the law of a material nor a failure criterion limits its stress. */
 static bool thin_is_unlimited(const Domain *d, int32_t material)
 {
   return material_is_unlimited(&d->materials[material]) &&
          !(d->failure.criterion && isfinite(d->failure.limit[material]));
 }
 
+/** Returns the spacing of the block of a particle [length]. */
 static double thin_spacing(const Domain *d, int32_t place)
 {
   return d->body.lattices[d->particles->block[place / SLICE]].spacing;
 }
 
-/** Returns the number of rows that a layer wants between blocks like that of a place.
- *  @param[in] place, other  of the unlimited material and of the layer */
+/** Returns the number of rows that a layer needs between unlimited blocks (table of docs/choosing.md).
+ *  @param[in] place, other  local indices of a particle of the unlimited block and of one of the layer */
 static int thin_wanted(const Domain *d, int32_t place, int32_t other)
 {
   const Region *region = domain_region(d, place);
   const Material *own = &d->materials[d->material[place / SLICE]], *layer = &d->materials[d->material[other / SLICE]];
   const int reach = (int)floor(d->family.horizon / thin_spacing(d, other) * (1 + 1e-9));
   const bool one_region = domain_region(d, other) == region, links = !strcmp(region->type->name, "micropolar");
-  if (one_region && links) return reach; /* the law of either end damages all of a link */
+  if (one_region && links) return reach; /* damage by the law of either end acts on the whole link */
   const bool on_particles = !region->type->on_bonds && !links;
-  if (on_particles && !(layer->softening_energy > 0)) return 4 * reach; /* yielding spreads over all of the layer */
+  if (on_particles && !(layer->softening_energy > 0)) return 4 * reach; /* the whole layer yields */
   if (!one_region || !region->type->on_bonds || !(material_share_of_bond(layer, own) > 0.5)) return 2 * reach;
   return region->type->laminates && reach > thin_few_rows ? reach + 1 : reach;
 }
 
-/** Returns the block at a point, or -1. */
+/** Returns the index of the block that contains a point; -1: none. */
 static int thin_block(const Body *body, const double point[3])
 {
   for (int k = 0; k < body->block_count; ++k)
@@ -63,7 +65,7 @@ static int thin_block(const Body *body, const double point[3])
   return -1;
 }
 
-/** Material of each block, -1: it has no particle. */
+/** Returns the index of the material of each block, -1 for a block without particles; NULL: out of memory. */
 static int32_t *thin_materials(const Domain *d)
 {
   int32_t *material = memory_plain((size_t)d->body.block_count, sizeof *material);
@@ -72,8 +74,9 @@ static int32_t *thin_materials(const Domain *d)
   return material;
 }
 
-/** Finds the sum of the unit vectors to the nearest neighbours of limited materials, and one of these neighbours.
- *  @return that neighbour, or -1 */
+/** Computes the mean direction from a particle to its nearest neighbours of limited materials.
+ *  @param[out] normal  unit vector; zero if there are no such neighbours
+ *  @return local index of one of these neighbours; -1: none, or their directions cancel */
 static int32_t thin_normal(const Domain *d, int32_t place, double normal[3])
 {
   const double near = 1.5; /* [spacings] */
@@ -96,10 +99,10 @@ static int32_t thin_normal(const Domain *d, int32_t place, double normal[3])
   return length > 0.5 ? found : -1;
 }
 
-/** Goes from a place along a normal through a layer that is thinner than the rows that it wants.
- *  @param[in] spacing  of the particles of the layer
- *  @param[in,out] layer  block of the layer, the block beyond and the rows between, if these are found
- *  @return false: the layer is thicker, or ends at a free face */
+/** Searches along a normal, from a particle through the layer beside it, for the unlimited block beyond the layer.
+ *  @param[in] spacing  spacing of the layer [length]
+ *  @param[in,out] layer  `wanted` is given; sets the block of the layer, the block beyond and the number of rows
+ *  @return false if the search ends within the layer or at a free face */
 static bool thin_cross(const Domain *d, const int32_t *material, int32_t place, const double normal[3], double spacing,
                        ThinLayer *layer)
 {
@@ -121,7 +124,8 @@ static bool thin_cross(const Domain *d, const int32_t *material, int32_t place, 
   return false;
 }
 
-/** Looks across the layer beside a place. @param[in,out] thin  [blocks] thinnest layers; 0 rows: none */
+/** Measures the layer beside a particle of an unlimited block.
+ *  @param[in,out] thin  [blocks] thinnest layer of each block; 0 rows: none */
 static void thin_look(const Domain *d, const int32_t *material, int32_t place, ThinLayer *thin)
 {
   double normal[3];
@@ -134,7 +138,8 @@ static void thin_look(const Domain *d, const int32_t *material, int32_t place, T
   if (!known->rows || layer.rows < known->rows) *known = layer;
 }
 
-/** Finds the thin layers of a body. @return [blocks] layers, to be freed; 0 rows: none. NULL: memory is out */
+/** Finds the thin layers of a body.
+ *  @return [blocks] layers, owned by the caller; 0 rows: the block is none; NULL: out of memory */
 static ThinLayer *thin_find(const Domain *d)
 {
   const Particles *p = d->particles;
@@ -152,6 +157,7 @@ static ThinLayer *thin_find(const Domain *d)
   return thin;
 }
 
+/** Warns of a thin layer, and stores the warning for the last words of the run. */
 static void thin_say(breccia_model *model, const ThinLayer *thin)
 {
   const Body *body = &model->domain.body;
@@ -162,17 +168,17 @@ static void thin_say(breccia_model *model, const ThinLayer *thin)
   else
     text_add(&ends, "blocks '%s' and '%s'", body->blocks[thin->ends[0]]->head.name,
              body->blocks[thin->ends[1]]->head.name);
-  plausibility_say(model, body->blocks[thin->block]->head.node,
-                   "block '%s' is a layer of %d row%s between %s, which cannot fail, and %d rows are wanted: bonds of "
-                   "these blocks reach across it and carry on when it has failed, so that the layer bears more than "
-                   "its strength, without a limit; give it %d rows or more, or a shorter horizon (docs/choosing.md, "
-                   "layers of little strength)",
-                   name, thin->rows, thin->rows == 1 ? "" : "s", text_words(&ends), thin->wanted, thin->wanted);
-  text_add(
-      &model->thin_layers,
-      "warning: layer '%s' has %d row%s, and %d are wanted: its strength is OVERESTIMATED, by the more the farther "
-      "it is strained, as bonds between the blocks beside it do not fail\n",
-      name, thin->rows, thin->rows == 1 ? "" : "s", thin->wanted);
+  plausibility_say(
+      model, body->blocks[thin->block]->head.node,
+      "block '%s' is a layer of %d row%s between %s, which cannot fail, and %d rows are wanted: bonds of "
+      "these blocks reach across it and carry on when it has failed, so that the layer carries more "
+      "than its strength, without a limit; give it %d rows or more, or a shorter horizon (docs/choosing.md, "
+      "layers of little strength)",
+      name, thin->rows, thin->rows == 1 ? "" : "s", text_words(&ends), thin->wanted, thin->wanted);
+  text_add(&model->thin_layers,
+           "warning: layer '%s' has %d row%s, and %d are wanted: its strength is OVERESTIMATED, and the more so the "
+           "larger its strain, because bonds between the blocks on both sides of it do not fail\n",
+           name, thin->rows, thin->rows == 1 ? "" : "s", thin->wanted);
   text_free(&ends);
 }
 

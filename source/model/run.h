@@ -56,7 +56,7 @@ void run_note_strains(breccia_model *model);
 /** Warns where these strains were so large that stresses depend on the measure of strain. */
 void run_tell_strains(const breccia_model *model, Text *text);
 
-/** Adds lines on layers that bore more than their strength as bonds bridge them (plausibility_thin.c). */
+/** Adds the warnings of layers with fewer rows than their formulation needs (plausibility_thin.c). */
 void run_tell_thin_layers(const breccia_model *model, Text *text);
 /** The largest compression of materials that no compression crushes: a list for summary.json, and lines for people. */
 void run_add_compressions(const breccia_model *model, Text *text);

@@ -27,7 +27,7 @@ static void why_count(const BondReasons *of, Text *text)
   text_add(text, "\n");
 }
 
-/** Adds a position in the coordinates of the body. */
+/** Adds the coordinates of a position with their unit. */
 static void why_position(const ResultView *view, const double position[3], Text *text)
 {
   text_add(text, " at [");
@@ -66,7 +66,7 @@ static void why_softened_point(const ResultView *view, const SoftenedPoint *poin
 }
 
 /** Adds the number of bonds or points past their peak at the last written state, and a line for each of the most
- *  damaged ones. @param[in] most  number of lines */
+ *  damaged ones. @param[in] most  maximum number of these lines */
 static void why_softened(const ResultView *view, const SoftenedView *softened, long long most, Text *text)
 {
   const SoftenedPoints *points = &softened->points;

@@ -14,7 +14,7 @@ typedef struct BarColumn {
 /** @return the k-th column, or NULL after the last; those of slip come last */
 const BarColumn *bar_column_at(int k);
 const BarColumn *bar_column_find(const char *name);
-enum { BAR_STRAIN, BAR_STRESS }; /* numbers of the first columns */
+enum { BAR_STRAIN, BAR_STRESS }; /* indices of the first columns */
 /** Their names as a choice of decks. @return the k-th, NULL after the last */
 const char *bar_column_name(int k);
 /** Whether bars have a column: those of slip only where one slips. */

@@ -9,7 +9,7 @@
 typedef struct PictureSpec {
   SectionHead head;
   const char *field, *component, *curve, *title, *x_label, *y_label, *name;
-  int bars, log_axes; /* numbers of bar_column_name, -1: none; and of picture_log_axes */
+  int bars, log_axes; /* indices of bar_column_name (-1: none) and of picture_log_axes */
   NumberList times;
   TextList of_bars;
   double deformed, view[3], range[3]; /* view: azimuth and elevation; range: lowest and highest value */

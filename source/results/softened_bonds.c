@@ -50,7 +50,7 @@ int softened_bonds_cut(hid_t own, int64_t states)
                        NULL);
 }
 
-/** Takes the listed points of a state. @param[in] rows  [SOFTENED_LISTED][SOFTENED_COLUMNS] */
+/** Reads the listed points of a state. @param[in] rows  [SOFTENED_LISTED][SOFTENED_COLUMNS] */
 static void softened_take_rows(const double *rows, SoftenedPoints *points)
 {
   while (points->listed < SOFTENED_LISTED && rows[SOFTENED_COLUMNS * points->listed] >= 0) {

@@ -1,7 +1,7 @@
 /* Softened bonds and material points in result files: counts, and the most damaged ones, at each written state.
  *
  * Group Breccia of a file with a law that may be damaged holds two datasets:
- *   SoftenedCounts  [states][3] number of points that may be damaged, are damaged, and carry nothing any more
+ *   SoftenedCounts  [states][3] number of points that may be damaged, are damaged, carry nothing
  *   Softened        [states][SOFTENED_LISTED][7] both particles, damage, opening, position x, y, z; rows without a
  *                   point have particles -1
  * Attributes of SoftenedCounts name the columns and the noun of the points. */

@@ -61,7 +61,7 @@ static bool holds_too_much(const Ledger *l)
   return !(l->kinetic <= 1.5 * l->mass * pow(beyond_all * (l->wave + l->given), 2));
 }
 
-/** The time step in words, beside the stable one where there is such a limit. */
+/** Writes the time step, and the stable time step if the solver has one, with their unit. */
 static void describe_step(const Clock *clock, char *words, size_t size)
 {
   const int count = snprintf(words, size, "%.4g %s", clock->time_step, clock->time_unit);
@@ -148,8 +148,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, const Units *un
       error, BRECCIA_FAILURE,
       "step %lld (time %g %s): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
       "motions have put in %.4g at most; the time step of %s is too long for what happens, or bonds that break or "
-      "close "
-      "give more than they got: choose %s, more zero-energy control, or leave contact out",
+      "close give more than they got: choose %s, more zero-energy control, or leave contact out",
       (long long)clock->step, clock->time, clock->time_unit, l->kinetic, internal, fracture, l->paid, step,
       isfinite(clock->stable) ? "a smaller 'safety' or 'time step'" : "a smaller 'time step' or more 'increments'");
 }

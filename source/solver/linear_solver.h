@@ -59,22 +59,22 @@ struct LinearSolver {
   void *own;               /* what the type keeps */
 };
 
-/** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */
-/** Numbers of the ways to solve equations, as decks choose them. */
+/** Indices of the linear solvers that decks choose, in the order of linear_word. */
 enum {
   LINEAR_AUTOMATIC,
 #define LINEAR(word, name, about) LINEAR_##name,
 #include "solver/linear_types.h"
 #undef LINEAR
 };
+/** Returns the word of a linear solver in decks: "automatic", then the solvers; NULL after the last. */
 const char *linear_word(int k);
 
 /** Why the matrix that a way of a deck needs is not to be had of a body under the loads that act; NULL: it is, or it needs none.
- *  @param[in] word  number of linear_word */
+ *  @param[in] word  index of linear_word */
 const char *linear_refusal(int word, const Unknowns *unknowns);
 
 /** `solver` has domain, loading and unknowns, and is zero beyond; destroy it in any case.
- *  @param[in] word  number of linear_word */
+ *  @param[in] word  index of linear_word */
 int linear_solver_create(LinearSolver *solver, int word, Error *error);
 void linear_solver_destroy(LinearSolver *solver);
 int linear_solver_prepare(LinearSolver *solver, Error *error);

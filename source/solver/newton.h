@@ -13,7 +13,7 @@
 typedef struct NewtonSpec {
   double residual, displacement, energy; /* tolerances; NaN: not asked */
   int64_t iterations;
-  int linear; /* number of linear_word */
+  int linear; /* index of linear_word */
 } NewtonSpec;
 
 #define NEWTON_FIELDS(type, member)                                                                                    \

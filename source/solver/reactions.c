@@ -36,16 +36,17 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
  * Images of different supports exert forces on each other, which are nothing to the body: of each support counts what its images do to particles inside.
  * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where
  * faces are held across.
- * Images in a corner of a held face and a periodic face belong to the held face along all axes: beyond a periodic face
- * the support goes on as it is. */
+ * Images in a corner of a held face and a periodic face belong to the held face along all axes, because the support
+ * continues beyond the periodic face. */
 
+/** Returns the margin that contains an image. */
 static const Margin *reactions_margin(const Body *body, int64_t n)
 {
   return &body->margins.items[body->margin_of[n]];
 }
 
-/** Returns the support to which the force on an image counts along an axis. Of the faces behind which the image stands,
- *  this is the one across that axis; a periodic face counts only if no other face is among them. */
+/** Returns the support to which the force on an image belongs along an axis: of the faces beyond which the image lies,
+ *  the one normal to that axis, or else the first. A periodic face counts only if all these faces are periodic. */
 static const LoadSpec *support_along(const Body *body, int64_t n, int axis)
 {
   const Margin *own = reactions_margin(body, n);

@@ -27,8 +27,10 @@ int64_t resultants_interval(const Solver *solver);
 /** After a step that has come out well: keeps resultants larger than those so far. */
 void resultants_note(Solver *solver);
 
-/** Returns the index of a load or support whose resultant depends on the body and was largest at a time, the end of a
- *  step; loads with a name first. @return -1: there is none */
+/** Returns the index of an active load or support whose resultant was the largest of the run so far at a time; loads
+ *  with a name take precedence. Only resultants that are not prescribed count.
+ *  @param[in] time  time at the end of a step
+ *  @return index of the load; -1: none */
 int resultants_largest_at(const Solver *solver, double time);
 
 /** Rows of the largest resultants that are kept. */

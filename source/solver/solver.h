@@ -13,16 +13,16 @@ enum {
   SOLVERS
 };
 
-/** A stage of a run: which solver, with which loads, from which displacements on. */
 typedef enum StageLaws { LAWS_AS_GIVEN, LAWS_ELASTIC } StageLaws;
 typedef enum StageDisplacements { DISPLACEMENTS_KEPT, DISPLACEMENTS_FROM_ZERO } StageDisplacements;
 
+/** Keys of a stage of a run: its solver, its loads, the laws and the zero of displacements. */
 typedef struct SolveSpec {
   SectionHead head;
   const char *name;
   int laws, displacements; /* StageLaws, StageDisplacements */
-  SectionList loads;       /* that begin with it */
-  TextList without;        /* names of loads that end */
+  SectionList loads;       /* loads that begin with the stage */
+  TextList without;        /* names of loads that end when the stage begins */
   void *of[SOLVERS];       /* the section of the solver that is given; NULL: not this one */
 } SolveSpec;
 

@@ -76,7 +76,7 @@ const Section static_section = {.name = "static",
                                 .size = sizeof(StaticSpec),
                                 FIELDS(static_fields)};
 
-/** Adds the rows of the increments in which the body jumped. */
+/** Adds the state of the jumps: ranges of increments, and the jump at the peak. */
 static void list_jumps(Jumps *jumps, StateList *list)
 {
   static const char *const names[] = {"first increments of jumps", "last increments of jumps"};

@@ -36,15 +36,15 @@ typedef struct Way {
   double bonds, given_off, sudden; /* works booked of it */
 } Way;
 
-/** Maximal number of ranges of increments that are listed. */
+/** Maximum number of listed ranges of increments. */
 enum { JUMP_RANGES = 6 };
 
-/** Increments of a stage in which the body jumped: found by descent by secants or dynamic relaxation. */
+/** Increments of a stage in which the body jumped: descent by secants or dynamic relaxation found their equilibrium. */
 typedef struct Jumps {
   int64_t ranges, omitted;                       /* number of listed ranges; number of increments beyond them */
   int64_t first[JUMP_RANGES], last[JUMP_RANGES]; /* numbers of increments of each range */
-  /** The last jump at whose beginning the force of a load or support was the largest so far: number of the increment,
-   *  0: none; index of the load; times of the beginning and of the end. */
+  /** The last jump at whose beginning a load or support had its largest force so far: number of the increment (0:
+   *  none), index of the load, times of the beginning and of the end of the increment. */
   int64_t peak_step, peak_load;
   double peak_begin, peak_end;
 } Jumps;
@@ -69,8 +69,8 @@ typedef struct Static {
   int64_t descended,
       relaxed; /* increments in which descent by secants, and dynamic relaxation found what Newton's method did not */
   Jumps jumps;
-  /** True within an increment for which short tries found no equilibrium: a long try is accepted though the body softens
-   *  within it. */
+  /** True if all shorter attempts of the increment found no equilibrium: a long attempt is accepted although the body
+   *  softens within it. */
   bool takes_coarse;
   double
       lag; /* forces out of balance over the reference, with what the last increment that was given back had led to */

@@ -44,14 +44,14 @@ static void book_sudden(Static *s, double *const moved[MOTIONS])
   s->way.sudden = sudden;
 }
 
-/** Returns true if the body softens on the way of an increment in which it has come to equilibrium. The increment may
- *  then have passed a peak, or may have led to an equilibrium that shorter increments do not lead to: cracking beams
- *  under a controlled opening have several, of which long increments find those with lower loads. The work of an increment
- *  that goes on as it began, less the work by the trapezium rule, bounds twice what that rule misses.
- *  @param[in] length  of the increment */
+/** Returns true if the body softens within an increment that ended in equilibrium. The increment may then have passed a
+ *  peak. It may also have found another equilibrium than shorter increments: cracking beams have several at one
+ *  opening, and long increments find those with lower loads. The predicted work of the increment, less its work by the
+ *  trapezium rule, bounds twice the error of that rule.
+ *  @param[in] length  length of the increment */
 static bool is_coarse(const Static *s, double length)
 {
-  const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of an increment as asked for */
+  const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of the increment of the deck */
   const Particles *p = s->domain->particles;
   double work = 0;
   if (!s->newton.change_forces[0] || s->takes_coarse || length / 2 < least * static_whole_increment(s->spec))
@@ -297,14 +297,14 @@ static void tell_jump_numbers(const Jumps *j, Text *warning)
   text_add(warning, ")");
 }
 
-/** Adds whether the largest force of a load or support is at the beginning of a jump, so that its peak lies in the
- *  jump, and the remedy. */
+/** Adds the jump at whose beginning a load or support has its largest force, and the remedy: the peak may lie within
+ *  that jump. */
 static void tell_peak_in_jump(const Solver *run, Text *warning)
 {
   const Static *s = run->own;
   const Jumps *j = &s->jumps;
   if (!j->peak_step || resultants_largest_at(run, j->peak_begin) < 0) {
-    text_add(warning, "; no load or support was at its largest force when one of them began");
+    text_add(warning, "; no load or support had its largest force at the beginning of any of these increments");
     return;
   }
   const Load *load = &run->loading->loads[j->peak_load];
@@ -320,7 +320,7 @@ static void tell_peak_in_jump(const Solver *run, Text *warning)
            (long long)(2 * s->spec->increments));
 }
 
-/** At the end of the stage: what is said to be followed was jumped over. */
+/** Warns at the end of a stage of the increments in which the body jumped. */
 static void tell_jumps(const Solver *run, Text *warning)
 {
   const Static *s = run->own;
@@ -448,7 +448,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
     tell_refused(s, outcome, settled);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
-      if (s->spec->control && s->newton.change_forces[0] && !s->takes_coarse) { /* a long one may lead over the gap */
+      if (s->spec->control && s->newton.change_forces[0] && !s->takes_coarse) { /* try a long increment */
         s->takes_coarse = true;
         s->next = static_whole_increment(s->spec);
         continue;

@@ -40,7 +40,7 @@ contains "the summary tells the cause" "$(grep first_broken_bond out/summary.jso
 "$breccia" run torn.yaml --output parts --restart > /dev/null 2>&1 || fail "the restart"
 "$breccia" why parts --first 1000000 | cmp - all || fail "after a restart other reasons"
 
-# Bonds that soften without breaking: how many, and where, at the last state; the same after a restart.
+# Bonds that soften without breaking: their number and position at the last state, and the same lines after a restart.
 cat > soft.yaml <<'Y'
 title: Softened strip
 units: {length: mm, force: N, time: s}

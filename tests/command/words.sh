@@ -259,7 +259,8 @@ Y
 contains "time of a body that cracks" "$("$breccia" check cracks.yaml 2>&1)" "ten to a hundred times that where it cracks"
 "$breccia" run cracks.yaml > out 2> errors || fail "a cantilever that cracks: $(cat errors)"
 told=$(grep -o 'in [0-9]* of [0-9]* increments the body gave way' out errors | grep -o 'in [0-9]*' | cut -c4- | head -n 1)
-# They are told by number, and whether a load or support was at its largest where one began.
+contains "increments by secants" "$(cat cracks/summary.json)" "\"increments_by_secants\": ${told:-?},"
+# The warning names the increments in which a body jumped, and the load that had its largest force as one began.
 cat > peak.yaml <<'Y'
 title: A strip that tears between two increments
 units: {length: mm, force: N, time: s}
@@ -283,7 +284,6 @@ range=$(sed -n 's/.* increments the body gave way (\([0-9]*\) to \([0-9]*\)): .*
 peak=$(sed -n "s/.*; the largest force of load 'pull' is that at the beginning of increment \([0-9]*\), .*/\1/p" tears)
 [ "${peak:-0}" -ge "${range%% *}" ] && [ "$peak" -le "${range##* }" ] || fail "numbers of increments, the peak among them: $(cat tears)"
 contains "what to do" "$(cat tears)" "compare with 'increments: 20'"
-contains "increments by secants" "$(cat cracks/summary.json)" "\"increments_by_secants\": ${told:-?},"
 grep -q increments_by_ $s && fail "an elastic body at rest gave way: $(cat $s)"
 # Forces within the tolerance of equilibrium do work of either sign: a few nJ of 16 J are not worth a word.
 awk -v d="$(figures cracks/summary.json damping)" -v e="$(figures cracks/summary.json external)" 'BEGIN {exit !(d * d < 1e-12 * e * e)}' ||

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Recorded results: small decks in which all keys of the language meet (recorded_decks.py) give the results that
-recorded.txt holds.
+"""Recorded results: small decks that contain all keys of the deck language (recorded_decks.py) give the results in
+recorded.txt.
 
 Relations and closed forms say what is right; this test says that a change moves no result, message or refusal that it
-does not mean to move. Whoever means to move results runs it with --record, reads the difference of recorded.txt, and
-names what moved in the commit.
+does not mean to move. After an intended change of results run it with --record, read the difference of
+recorded.txt, and name the results that moved in the commit.
 
 A figure is a sum over all entries of a field, or over the columns of a file, with a weight of its own for each entry,
 so that any entry moves it.
@@ -33,11 +33,11 @@ import recorded_decks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 RECORD = os.path.join(HERE, "recorded.txt")
-NUMBERS = range(900)  # of decks that are tried for the record
-DECKS = 300  # that run
+NUMBERS = range(900)  # numbers of the decks that --record tries
+DECKS = 300  # number of recorded decks that run
 DIGITS, TOLERANCE = 7, 2e-6
 
-# Keys that no deck here has, and why.
+# Keys that no deck of this test has, and the test that has them.
 ELSEWHERE = {
     "material": ("opensees", "remote", "server", "processes", "stage", "stress unit", "timeout"),  # servers.sh
     "deck": ("include", "variables", "title", "pictures"),  # pictures: picture.sh; the others change no results
@@ -51,7 +51,7 @@ KEYLESS = ("picture", "correspondence", "bond-based", "ordinary", "hybrid", "mic
 
 
 class Outcome:
-    """What one deck does: status, words with '#' for numbers, and figures with their names."""
+    """Outcome of one deck: status, printed lines with '#' for numbers, and figures with their names."""
 
     def __init__(self, status, words, figures, names):
         self.status, self.words, self.figures, self.names = status, words, figures, names
@@ -85,7 +85,7 @@ def fold(digests, floors):
     return total
 
 
-# Figures of round-off, and an estimate by an iteration.
+# Names of figures that are round-off, and of an estimate by an iteration.
 NOISE = re.compile(r"imbalance|/left|between|numerical|stable_time_step|iterations|products|wall")
 
 
@@ -238,7 +238,7 @@ def compare(number, outcome, expected):
     return messages
 
 
-# ---- whether all keys are there
+# ---- coverage of keys
 
 
 def keys_of(schema, definition, value, found):

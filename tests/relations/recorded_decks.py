@@ -1,15 +1,14 @@
-"""Small decks in which every key of the language meets others, by choices that follow from the number of the deck and
-the name of what is chosen.
+"""Small decks that combine all keys of the deck language at random.
 
-A deck is a dictionary as it would be read. Each choice is made by a hash, so that a new key or level changes only the
-decks that take it."""
+A deck is a dictionary of its keys. Each choice is a hash of the number of the deck and the name of the choice, so that
+a new key or level changes only the decks that take it."""
 
 import hashlib
 
 SPACES = ("plane strain", "plane stress", "3-D", "1-D")
 GREEN, SMALL = "green-lagrange", "small"
 
-# Constitutive models: parameters that they always have here, those of which each deck takes some, and formulations.
+# Constitutive models: parameters of all decks, parameters of which each deck takes some, and formulations.
 ELASTIC = {"Young modulus": "1e4 kPa", "Poisson ratio": 0.2}
 STIFF = {"Young modulus": "2e4 kPa", "Poisson ratio": 0.2}
 BULK = {"bulk modulus": "9e3 kPa", "shear modulus": "6e3 kPa"}
@@ -267,7 +266,7 @@ class Deck:
         self.fibres = "Poisson ratio" not in LAWS[self.law][0] and "bulk modulus" not in LAWS[self.law][0]
         solvers = list(SOLVERS)
         if self.fibres and self.law != "elastic-1d" and choose.holds("in motion", 0.8):
-            solvers = ["explicit", "long explicit", "implicit", "quasi-static"]  # what softens finds no equilibrium
+            solvers = ["explicit", "long explicit", "implicit", "quasi-static"]  # softening has no equilibrium
         self.solver = choose.one("solver", solvers)
         self.text = {"units": choose.one("units", ({"length": "m", "force": "kN", "time": "s"}, {"length": "cm"}))}
         for part in (

@@ -5,8 +5,8 @@
  * Uniaxial curves over plastic strain x are those of Lee and Fenves: tension f_t exp(-b x), compression
  * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
- * If the formulation gives lengths by crack normal (normal_lengths.h), each point spreads G_F over that length. The
- * crushing energy has one length.
+ * If the formulation gives lengths by crack normal (normal_lengths.h), each point spreads G_F over the length of its
+ * own crack. The crushing energy is spread over one length for all points.
  *
  * The share r' is that of tension in the principal stresses, or the closing offset over the size of the elastic strain
  * if that is more: stress derives from a free energy, and closed cycles of strain make none (docs/theory.md 8.7,

@@ -14,7 +14,7 @@ typedef struct DamagePlasticity {
   double by_twice_shear, by_rounding, by_tension, by_rest_of_alpha; /* 1 / 2G, 1 / rounding, 1 / f_t, 1 / (1 - alpha) */
   double by_invariant, by_deviator; /* of squares of I1 and q in a^2: 1 / (9 K E), 1 / (3 G E) */
   bool recovers_by_share;           /* as published: no closing offset */
-  double opening, initial_opening;  /* G_F / f_t and G_f / f_t [length]; the latter 0 without a tail */
+  double opening, initial_opening;  /* G_F / f_t and G_f / f_t [length]; initial_opening is 0 without a tail */
   double peak_strain;               /* f_t / E */
   NormalLengths lengths;
   SolidUpdate *update; /* for the vectors of this machine */
@@ -22,7 +22,8 @@ typedef struct DamagePlasticity {
 
 /* Plastic strain first. */
 /* The closing offset is the size of the elastic strain at which closed cracks begin to carry stress [strain].
- * PLASTIC_LENGTH is the length by the crack normal (normal_lengths.h). */
+ * PLASTIC_LENGTH is the length over which the point spreads G_F, by its crack normal (normal_lengths.h); 0: the length
+ * of the law. */
 enum {
   PLASTIC_IN_TENSION = 6,
   PLASTIC_IN_COMPRESSION,

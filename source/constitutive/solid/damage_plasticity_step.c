@@ -33,14 +33,14 @@ LANES_INLINE Trial trial_of(DualSlopes n, const Lanes principal[3])
   return t;
 }
 
-/** Tension curves of points: b, and k - 1 with a tail. */
+/** Parameters of the tension curves of points (damage_plasticity.c): b [1], and k - 1 if the curve has a tail. */
 typedef struct TensionCurves {
   Lanes rate, steeper;
 } TensionCurves;
 
-/** Returns the tension curves of points that spread the fracture energy over a length; 0: over the length of the law.
- *  A length for which the curve would snap back gives a curve that falls over a hundredth of the peak strain.
- *  @param[in] length  of points [length] */
+/** Returns the tension curves of points that spread the fracture energy over a length. The area below a curve over
+ *  plastic strain, over f_t, is at least (1 - m + 0.01) f_t / E: steeper curves would snap back.
+ *  @param[in] length  length of each point [length]; 0: the length of the law */
 LANES_INLINE TensionCurves tension_curves_over(const DamagePlasticity *c, Lanes length)
 {
   const double m = c->tension_share, steepest = (1 - m + 0.01) * c->peak_strain, t = c->tail;

@@ -55,7 +55,7 @@ static const Section band_section = {.name = "band pass",
 typedef struct FileSpec {
   SectionHead head;
   const char *name, *column, *times;
-  int baseline; /* number of its word: degree of the polynomial + 1, 0 for none */
+  int baseline; /* index of its word: degree of the polynomial + 1; 0: no correction */
   double scale, step;
   int64_t channel;
   BandSpec *band;

@@ -1,4 +1,4 @@
-/* Pressure on a round surface. */
+/* Load `radial pressure`: a pressure on a round surface, directed away from an axis. */
 #ifndef BRECCIA_LOADING_LOAD_RADIAL_PRESSURE_H
 #define BRECCIA_LOADING_LOAD_RADIAL_PRESSURE_H
 
@@ -11,8 +11,9 @@ typedef struct RadialPressureSpec {
 
 extern const LoadType radial_pressure_load;
 
-/** Finds the unit vector from the axis to a place, across the axis.
- *  @param[out] distance  of the place from the axis @return false: the place stands on the axis */
+/** Computes the unit vector from the axis to a particle, perpendicular to the axis.
+ *  @param[out] distance  distance of the particle from the axis [length]
+ *  @return false if the particle is on the axis */
 bool radial_pressure_outwards(const RadialPressureSpec *spec, const Particles *particles, int32_t place, double n[3],
                               double *distance);
 

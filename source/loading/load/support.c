@@ -15,7 +15,7 @@ enum { HELD_IN_ALL, HELD_ACROSS, HELD_PERIODIC };
 
 typedef struct SupportSpec {
   SectionHead head;
-  int held; /* number of its word */
+  int held; /* index of its word */
   double displacement[3];
   int64_t layers;
 } SupportSpec;

@@ -9,7 +9,7 @@
 typedef struct TieSpec {
   SectionHead head;
   Reference to;
-  int directions; /* number of its word */
+  int directions; /* index of its word */
 } TieSpec;
 
 static const char *const tie_directions[] = {"xyz", "x", "y", "z", "xy", "yz", "xz", NULL};

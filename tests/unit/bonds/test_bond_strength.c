@@ -242,8 +242,8 @@ static void the_strongest_direction_decides(void **state)
   }
 }
 
-/** The bending strength that is told lies between those measured with 10 and 20 rows, and at depths of 0.3, 0.6 and 1.2
- *  E G_F / f_t^2; there is none for laws that were not measured. */
+/** bending_factor interpolates between measured beams of 10 and 20 rows and depths of 0.3, 0.6 and 1.2 E G_F / f_t^2,
+ *  and is NaN for laws that were not measured. */
 static void bending_strength_lies_between_measured_beams(void **state)
 {
   (void)state;
@@ -259,8 +259,8 @@ static void bending_strength_lies_between_measured_beams(void **state)
   assert_true(isnan(bending_factor("ordinary", law, 10, 0.3)));
 }
 
-/** The strength that is told of beams and of links is that of the deck: rows over the shortest side, depth over
- *  E G_F / f_t^2 of the tensile strength, whichever share of that strength bonds take. */
+/** The lines of `check` on beams and links have the number of rows over the shortest side and the depth over
+ *  E G_F / f_t^2 with the tensile strength of the deck, whatever share of that strength bonds take. */
 static void bending_strength_is_told(void **state)
 {
   (void)state;

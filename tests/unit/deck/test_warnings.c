@@ -155,17 +155,18 @@ static const struct {
     {"m", USUAL, BAR("0.02", "1.61e-3"), "area: bars take 0.101 of the volume of the body"},
     {"m", USUAL, BAR("0.025", "1e-4") HALF, NULL},
     {"m", USUAL, BAR("0.015", "1e-4") HALF, "points: bar 'low' comes to a face with 'support'"},
-    /* areas: a face of 0.008 m2, of one layer or two; of the whole body no face is known; a quarter of a round hole */
+    /* areas: a face of 0.008 m2, of one layer or two; the whole body, whose face is unknown; a quarter of a round
+     * hole */
     {"m", USUAL, TRACTION("face: y+", "0.0054"), NULL},
     {"m", USUAL, TRACTION("face: y+", "0.0170"), NULL},
     {"m", USUAL, TRACTION("face: y+, layers: 2", "0.0054"), NULL},
     {"m", USUAL, TRACTION("face: y+", "0.0053"),
-     "area: 0.0053 m2, but the volumes of the particles on which the load acts make a face of 0.008 m2, 1.51 times "
-     "more"},
-    {"m", USUAL, TRACTION("face: y+", "0.08"), "make a face of 0.01143 m2, 7 times less"},
-    {"m", USUAL, TRACTION("face: y+, layers: 2", "0.0800"), "make a face of 0.016 m2, 5 times less"},
+     "area: 0.0053 m2, but the volumes of the particles on which the load acts make a face of 0.008 m2, larger by a "
+     "factor of 1.51"},
+    {"m", USUAL, TRACTION("face: y+", "0.08"), "make a face of 0.01143 m2, smaller by a factor of 7;"},
+    {"m", USUAL, TRACTION("face: y+, layers: 2", "0.0800"), "make a face of 0.016 m2, smaller by a factor of 5;"},
     {"m", USUAL, TRACTION(UPPERMOST, "0.0054"), NULL},
-    {"m", USUAL, TRACTION(UPPERMOST, "8e-4"), "make a face of 0.008 m2, 10 times more"},
+    {"m", USUAL, TRACTION(UPPERMOST, "8e-4"), "make a face of 0.008 m2, larger by a factor of 10;"},
     {"m", USUAL, TRACTION("all: yes", "0.07"), NULL},
     {"m", USUAL, TRACTION("all: yes", "0.11"), "area: 0.11 m2"},
     {"m", USUAL, ROUND("0.003"), NULL},

@@ -1,4 +1,4 @@
-/* Layers of little strength between blocks that cannot fail: what they carry, and which are too thin for it. */
+/* Layers of little strength between blocks that cannot fail: their largest force, and warnings of too few rows. */
 #include "model/run.h"
 #include "solver/reactions.h"
 #include "support.h"
@@ -37,7 +37,7 @@ static breccia_model *strip_of(const char *elastic, const char *law, double rati
 #define LINKS "model: link-damage, Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 100"
 #define VISCOUS "model: viscoelastic, Poisson ratio: 0.2, relaxing share: 0.5, relaxation time: 1"
 
-/** Largest mean stress of the strip over the tensile strength. */
+/** Runs a strip. @return its largest mean stress over the tensile strength */
 static double strip_peak(breccia_model *m)
 {
   double peak = 0;
@@ -68,7 +68,7 @@ static void thin_layers_fail_at_their_strength(void **state)
   }
 }
 
-/** Rows that a layer wants, by formulation, and materials that want none. */
+/** Warnings appear below the number of rows that a layer needs by formulation, and for no layer that needs none. */
 static void layers_that_blocks_bridge_are_told(void **state)
 {
   (void)state;
@@ -110,7 +110,7 @@ static void layers_that_blocks_bridge_are_told(void **state)
     }
 }
 
-/** Blocks whose bonds break can fail. */
+/** There is no warning of layers between blocks whose bonds break. */
 static void blocks_that_break_bridge_nothing(void **state)
 {
   (void)state;

@@ -73,7 +73,7 @@ static double length_of_context(const void *context, const double normal[3])
 static void points_spread_the_fracture_energy_over_the_length_of_their_first_strain(void **state)
 {
   (void)state;
-  /* Of a point whose damage has just begun the curve is that of a law with the length: 0.05 m, in place of 0.03 m. */
+  /* A point with a length of 0.05 m by its crack normal follows the curve of a law whose own length is 0.05 m. */
   static const char *const laws[] = {"mazars", "damage-plasticity", "damage-plasticity"};
   const double length = 0.05, peak = 1e-4;
   for (int k = 0; k < 3; ++k) {

@@ -100,9 +100,8 @@ static void each_of_several_walls_carries_its_own(void **state)
   }
 }
 
-/** What holds rotations exerts moments alone, in directions that move freely, too, where particles are not in balance. */
-/** One period of a layer carries what acts on one period: shear and weight, whatever stands in the corners beside the
- *  periodic faces. */
+/** The base of a layer between periodic faces carries the shear and the weight of one period, whatever images are in
+ *  the corners beside the periodic faces. */
 static void a_base_between_periodic_faces_carries_one_period(void **state)
 {
   (void)state;
@@ -131,6 +130,7 @@ static void a_base_between_periodic_faces_carries_one_period(void **state)
   }
 }
 
+/** Prescribed rotations exert moments alone, also along free directions in which particles are not in balance. */
 static void what_holds_a_rotation_exerts_a_moment_and_no_force(void **state)
 {
   (void)state;
