@@ -99,6 +99,17 @@ static int32_t thin_normal(const Domain *d, int32_t place, double normal[3])
   return length > 0.5 ? found : -1;
 }
 
+/** Returns true if a block goes on beyond its face across a normal as its image, or as the body once more. */
+static bool thin_goes_on(const Body *body, int block, const double normal[3])
+{
+  const double along = 0.9; /* least component of the normal along the axis of the face */
+  for (int k = 0; k < body->margins.count; ++k) {
+    const Margin *margin = &body->margins.items[k];
+    if (margin->block == block && (margin->high ? 1 : -1) * normal[margin->axis] > along) return true;
+  }
+  return false;
+}
+
 /** Searches along a normal, from a particle through the layer beside it, for the unlimited block beyond the layer.
  *  @param[in] spacing  spacing of the layer [length]
  *  @param[in,out] layer  `wanted` is given; sets the block of the layer, the block beyond and the number of rows
@@ -113,6 +124,11 @@ static bool thin_cross(const Domain *d, const int32_t *material, int32_t place, 
     double point[3];
     for (int k = 0; k < 3; ++k) point[k] = p->position[k][place] + n * step * normal[k];
     const int block = thin_block(&d->body, point);
+    if (block < 0 && inside && thin_goes_on(&d->body, layer->block, normal)) { /* its image, and that of the place */
+      layer->ends[1] = layer->ends[0];
+      layer->rows = (2 * inside + THIN_STEPS / 2) / THIN_STEPS;
+      return true;
+    }
     if (block < 0 || material[block] < 0) return false;
     const bool limited = !thin_is_unlimited(d, material[block]);
     if (limited && !inside++) layer->block = block;

@@ -110,11 +110,15 @@ void resultants_note(Solver *s)
 
 int resultants_largest_at(const Solver *s, double time)
 {
+  const double roundoff = 1e-6; /* of the largest resultant: below, a load carries nothing, at whatever time */
   const Resultants *r = s->resultants;
   int found = -1;
+  double largest = 0;
+  for (int l = 0; r && l < s->loading->count; ++l) largest = fmax(largest, resultants_size(r->largest[l]));
   for (int l = 0; r && l < s->loading->count; ++l) {
     const Load *load = &s->loading->loads[l];
-    if (!load_acts(s->loading, load) || !(resultants_size(r->largest[l]) > 0) || r->time[l] != time) continue;
+    if (!load_acts(s->loading, load) || !(resultants_size(r->largest[l]) > roundoff * largest) || r->time[l] != time)
+      continue;
     if (load->spec->name) return l;
     if (found < 0) found = l;
   }

@@ -140,7 +140,7 @@ def run(options, folder, number):
     return Outcome(done.returncode, words, figures, names)
 
 
-TIMES = re.compile(r"took [^\n]*|[^\n]*(?:memory|MB|computing)[^\n]*|[^\n]*\bns\b[^\n]*")
+TIMES = re.compile(r"took [\d.]+ (?:s|min|h)\b[^\n]*|[^\n]*(?:memory|MB|computing)[^\n]*|[^\n]*\bns\b[^\n]*")
 
 
 def words_of(text):

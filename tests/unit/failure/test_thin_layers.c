@@ -110,6 +110,28 @@ static void layers_that_blocks_bridge_are_told(void **state)
     }
 }
 
+/** Half of a layer at a plane of symmetry counts with its image. */
+static void half_a_layer_counts_with_its_image(void **state)
+{
+  (void)state;
+  for (int rows = 1; rows <= 2; ++rows) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: N, time: s}\n"
+        "materials: {e: {density: 2400, Young modulus: 30e9, " SOLID
+        "}, w: {density: 2400, Young modulus: 30e9, " MAZARS "}}\nbody:\n"
+        "  l: {material: e, lattice: square, spacing: 0.005, thickness: 1, shape: {box: {particles: [5, 5]}}}\n"
+        "  m: {material: w, lattice: square, spacing: 0.005, thickness: 1, shape: {box: {from: [0.025, 0], to: [%g, "
+        "0.025]}}}\n"
+        "peridynamics: {space: plane stress, formulation: hybrid, horizon: 3.015 spacings}\n"
+        "loads: [{on: {block: m, face: x+}, support: {held: across}}, {on: {block: l, face: x-}, displacement: [-1e-9, "
+        "0], history: {ramp to: 1}}]\nsolve: {static: {increments: 1}}\n",
+        0.025 + 0.005 * rows);
+    const bool told = strstr(breccia_model_warnings(m), "block 'm' is a layer of 2 rows between both sides") != NULL;
+    if (told != (rows == 1)) fail_msg("%d rows: %s", rows, breccia_model_warnings(m));
+    breccia_model_destroy(&m);
+  }
+}
+
 /** There is no warning of layers between blocks whose bonds break. */
 static void blocks_that_break_bridge_nothing(void **state)
 {
@@ -125,6 +147,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(thin_layers_fail_at_their_strength),
       cmocka_unit_test(layers_that_blocks_bridge_are_told),
+      cmocka_unit_test(half_a_layer_counts_with_its_image),
       cmocka_unit_test(blocks_that_break_bridge_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
