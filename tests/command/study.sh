@@ -76,6 +76,8 @@ status=$?
 if [ $status = 130 ]; then
   contains "stopped study" "$(cat out)" "goes on from here"
   contains "stopped case" "$("$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa' --check)" "1 of 2: E-20-GPa: to go on"
+  cp -r long-study begun-study
+  "$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa' --again --output begun-study | grep 'from its checkpoint' && fail "--again goes on with a case that was stopped"
   contains "going on" "$("$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa')" "1 of 2: E-20-GPa, from its checkpoint"
 else
   equal "study that ended before it was stopped" $status 0

@@ -72,6 +72,40 @@ static void divided_strengths_are_those_of_divided_parameters(void **state)
   }
 }
 
+/** Strengths are divided in all regions. */
+static void strengths_of_all_regions_are_divided(void **state)
+{
+  (void)state;
+  breccia_model *m[2];
+  double apart = 0, largest = 0;
+  for (int s = 0; s < 2; ++s) {
+    m[s] = model_of(
+        UNITS "materials: {m: {" J2 "yield stress: %g}, n: {" J2 "yield stress: %g}}\n"
+              "body:\n"
+              "  b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [8, 5]}}}\n"
+              "  c: {material: n, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [8, 5], first "
+              "particle: [0.05, 0.55]}}}\n"
+              "peridynamics: {space: plane strain, horizon: 2.015 spacings, regions: {far: {blocks: [c], formulation: "
+              "ordinary}}}\n"
+              "loads: [{on: {block: b, face: y-, layers: 2}, displacement: [0, 0]}, {on: {block: c, face: y+, layers: "
+              "2}, displacement: [8e-3, -4e-3], history: {ramp to: 1}}%s]\n"
+              "solve: {static: {increments: 3, method: relaxation, residual: 1e-6, relaxation iterations: 20000}}\n"
+              "pictures: []\n",
+        s ? 10. : 16., s ? 5. : 8., s ? "" : ", {strength reduction: 1.6}");
+    m[s]->threads = 1;
+    while (!solver_is_done(&m[s]->solver)) step_surely(m[s], 1);
+  }
+  const Particles *p = m[0]->domain.particles, *q = m[1]->domain.particles;
+  for (int c = 0; c < 2; ++c)
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      apart = larger_of(apart, fabs(p->internal[c][i] - q->internal[c][i]));
+      largest = larger_of(largest, fabs(q->internal[c][i]));
+    }
+  if (!(apart <= 1e-4 * largest)) fail_msg("forces are %g of %g apart", apart, largest);
+  for (int s = 0; s < 2; ++s) breccia_model_destroy(&m[s]);
+}
+
 /** Ground on a slope without end, of height 10 m along its normal, whose gravity leans by atan(0.5); periodic along the
  * slope. */
 static breccia_model *slope_of(const char *formulation, const char *law, int layers)
@@ -205,6 +239,7 @@ int main(void)
       cmocka_unit_test(a_column_of_soil_without_tension_stands),
       cmocka_unit_test(factors_that_come_to_nothing_are_refused),
       cmocka_unit_test(divided_strengths_are_those_of_divided_parameters),
+      cmocka_unit_test(strengths_of_all_regions_are_divided),
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
       cmocka_unit_test(wrong_reductions_are_refused),
   };

@@ -480,6 +480,34 @@ static void a_law_is_told_whole_and_saved_and_restored(void **state)
   end();
 }
 
+/** A datagram with one wrong bit is dropped as if it had been lost, and the next whole one is received. */
+static void a_damaged_datagram_counts_as_lost(void **state)
+{
+  (void)state;
+  static const char words[] = "words";
+  int ends[2];
+  uint8_t bytes[FRAME_HEADER + sizeof words], *payload;
+  Frame frame = {.operation = OPERATION_LAWS, .length = sizeof words};
+  Text reason = {0};
+  assert_int_equal(socketpair(AF_UNIX, SOCK_DGRAM, 0, ends), 0);
+  Channel *channel = channel_over(ends[1], true, false);
+  assert_non_null(channel);
+  memcpy(bytes + FRAME_HEADER, words, sizeof words);
+  frame_seal(&frame, bytes);
+  for (size_t k = 0; k < sizeof words; ++k) {
+    bytes[FRAME_HEADER + k] ^= 1;
+    assert_int_equal(send(ends[0], bytes, sizeof bytes, 0), sizeof bytes);
+    bytes[FRAME_HEADER + k] ^= 1;
+  }
+  assert_int_equal(channel_receive(channel, &frame, &payload, 0.01, &reason), CHANNEL_LATE);
+  assert_int_equal(send(ends[0], bytes, sizeof bytes, 0), sizeof bytes);
+  assert_int_equal(channel_receive(channel, &frame, &payload, PATIENCE, &reason), CHANNEL_OK);
+  assert_string_equal(payload, words);
+  text_free(&reason);
+  channel_close(&channel);
+  close(ends[0]);
+}
+
 /* ---- who is served ---- */
 
 static void strangers_cannot_speak_for_a_client(void **state)
@@ -764,6 +792,7 @@ int main(void)
       cmocka_unit_test_teardown(units_are_those_of_who_asks, end_what_serves),
       cmocka_unit_test_teardown(what_a_server_cannot_do_is_said_and_changes_nothing, end_what_serves),
       cmocka_unit_test_teardown(a_law_is_told_whole_and_saved_and_restored, end_what_serves),
+      cmocka_unit_test(a_damaged_datagram_counts_as_lost),
       cmocka_unit_test_teardown(strangers_cannot_speak_for_a_client, end_what_serves),
       cmocka_unit_test_teardown(a_silent_client_of_datagrams_makes_room, end_what_serves),
       cmocka_unit_test_teardown(who_does_not_know_the_secret_holds_nothing, end_what_serves),
