@@ -320,6 +320,41 @@ static void bars_are_drawn_in_their_colours_over_a_pale_body(void **state)
   result_view_close(&view);
 }
 
+/** Of two bars behind each other the nearer one is seen: a stretched one from the one side, a pressed one from the other. */
+static void bars_in_front_hide_those_behind(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      "title: Prism\nunits: {length: m, force: kN, time: s}\n"
+      "materials:\n"
+      "  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n"
+      "  steel: {model: elastic-1d, density: 7.85, Young modulus: 2e8}\n"
+      "body: {b: {material: soft, spacing: 0.05, shape: {box: {from: [0, 0, 0], to: [1, 0.3, 0.2]}}}}\n"
+      "bars:\n"
+      "  near: {points: [[0.2, 0.05, 0.1], [0.8, 0.05, 0.1]], diameter: 0.01, material: steel}\n"
+      "  far: {points: [[0.2, 0.25, 0.1], [0.8, 0.25, 0.1]], diameter: 0.01, material: steel}\n"
+      "peridynamics: {formulation: bond-based, horizon: 1.5 spacings}\n"
+      "loads: [{on: {all: yes}, field: {displacement: ['1e-3 * x * (0.15 m - y) / 0.1 m', 0, 0]}, history: {ramp to: "
+      "1}}]\n"
+      "solve: {static: {increments: 1, end time: 1}}\nresults: {number: 1, precision: double}\npictures: []\n");
+  run_to(m, "prism", INT64_MAX, 0);
+  breccia_model_destroy(&m);
+  ResultView view;
+  open_view(&view, "prism");
+  for (int side = 0; side < 2; ++side) {
+    const PictureOptions o = {
+        .bars = "stress", .deformed = 1, .azimuth = side ? 90 : -90, .elevation = 0, .low = -1e5, .high = 1e5};
+    int wide, high, red, blue;
+    unsigned char *pixels = picture_pixels(&view, view.steps - 1, &o, NULL, &wide, &high, NULL);
+    assert_non_null(pixels);
+    count_colours(pixels, wide, high, &red, &blue);
+    free(pixels);
+    print_message("from side %d: %d red, %d blue\n", side, red, blue);
+    assert_true((side ? blue : red) > 200 && (side ? red : blue) < 20);
+  }
+  result_view_close(&view);
+}
+
 static void wrong_wishes_are_told(void **state)
 {
   (void)state;
@@ -350,6 +385,7 @@ int main(void)
       cmocka_unit_test(states_that_are_cut_off_take_those_of_bars_along),
       cmocka_unit_test(bars_move_with_the_body_and_stay_in_the_picture),
       cmocka_unit_test(bars_are_drawn_in_their_colours_over_a_pale_body),
+      cmocka_unit_test(bars_in_front_hide_those_behind),
       cmocka_unit_test(wrong_wishes_are_told),
   };
   return cmocka_run_group_tests(tests, begin, end);
