@@ -172,7 +172,6 @@ typedef struct Search {
   Lanes rest, found[FOUND];                      /* what the last step adds; what it leads to */
   LaneMask flows, ended, bracketed;
   SpectrumApart apart; /* of the elastic trial strain, for tangents and crack normals */
-  Lanes length;        /* by the crack normal (normal_lengths.h) */
   TensionCurves curves;
 } Search;
 
@@ -195,8 +194,7 @@ LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, S
   const SpectrumApart apart = spectrum_apart(elastic);
   spectrum_values(&apart, value);
   if (tangents || c->lengths.across) s->apart = apart;
-  s->length = p->committed[PLASTIC_LENGTH];
-  s->curves = tension_curves_over(c, s->length);
+  s->curves = tension_curves_over(c, p->committed[PLASTIC_LENGTH]);
   for (int k = 0; k < 3; ++k) s->principal[k] = volume + lanes_set(twice) * value[k];
   const Trial t = trial_of(none, s->principal);
   s->sum = t.sum.value;
@@ -224,10 +222,6 @@ LANES_INLINE bool search_on(const DamagePlasticity *c, bool tail, Search *s, con
   const Lanes gap = flow.excess.value, slope = flow.excess.slope[LEFT];
   const LaneMask first = s->gap_before == lanes_set(INFINITY);
   s->flows |= first & (gap > lanes_set(1e-12 * c->compression));
-  if (c->lengths.across && lanes_any(first)) { /* those that begin to flow have their length from this step on */
-    s->length = normal_lengths_choose(&c->lengths, &s->apart, s->flows, s->length);
-    s->curves = tension_curves_over(c, s->length);
-  }
   const LaneMask beyond = gap > zero;
   s->high = lanes_choose(beyond, left, s->high);
   s->low = lanes_choose(beyond, s->low, left);
@@ -307,8 +301,8 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   plastic_strain_lanes(&c->elastic, p->strain, effective, plastic);
   for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
   p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
-  p->trial[PLASTIC_LENGTH] =
-      lanes_choose(s->found[FOUND_TENSION] > lanes_set(0), s->length, p->committed[PLASTIC_LENGTH]);
+  p->trial[PLASTIC_LENGTH] = normal_lengths_choose(&c->lengths, &s->apart, s->found[FOUND_TENSION] > lanes_set(0),
+                                                   p->committed[PLASTIC_LENGTH]);
   p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
   Dual size;
   const Dual share =

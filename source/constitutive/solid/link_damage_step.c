@@ -113,7 +113,7 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   find_closed_stress(n, &c->closed, strain, effective, closed);
   const LaneMask begins = parts.value[0] > lanes_set(c->link.tension_begin);
   const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[LINK_LENGTH]);
-  find_rest(n, c, p->committed, length, strain, effective, closed, p->trial, rest);
+  find_rest(n, c, p->committed, p->committed[LINK_LENGTH], strain, effective, closed, p->trial, rest);
   p->trial[LINK_LENGTH] = length;
   for (int k = 0; k < 3; ++k) {
     closed[k] = dual_product(n, rest[1], closed[k]);

@@ -84,7 +84,7 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   const LaneMask begins = mazars_equivalent(spectrum.value) > lanes_set(c->threshold);
   const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[MAZARS_LENGTH]);
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
-  respond(n, c, mazars_rate(c, length), strain, p->committed, stress, &largest, &damage);
+  respond(n, c, mazars_rate(c, p->committed[MAZARS_LENGTH]), strain, p->committed, stress, &largest, &damage);
   p->trial[MAZARS_LENGTH] = length;
   p->trial[MAZARS_LARGEST] = largest.value;
   p->trial[MAZARS_DAMAGE] = damage.value;

@@ -102,28 +102,6 @@ static void points_spread_the_fracture_energy_over_the_length_of_their_first_str
   }
 }
 
-/** One step from an elastic state into softening has the length of the crack normal in it. */
-static void a_point_has_its_length_in_the_step_in_which_it_cracks(void **state)
-{
-  (void)state;
-  static const char *const laws[] = {"mazars", "damage-plasticity"};
-  const double length = 0.05, strain[6] = {5e-4};
-  for (int k = 0; k < 2; ++k) {
-    double stress[2][6];
-    for (int turn = 0; turn < 2; ++turn) {
-      Material m =
-          material_of(laws[k], "Young modulus=30e6", "Poisson ratio=0", "tensile strength=3000", "fracture energy=0.1",
-                      turn ? "length=0.05" : "length=0.03", k ? "compressive strength=34000" : NULL, NULL);
-      if (!turn) assert_true(normal_lengths_give(&m, &(NormalLengths){length_of_context, &length}));
-      Point p = point_start(&m);
-      point_try(&p, strain, stress[turn], NULL, 0);
-      point_stop(&p);
-      material_destroy(&m);
-    }
-    assert_near(stress[0][0], stress[1][0], 1e-6 * stress[1][0]);
-  }
-}
-
 static void dilation_that_is_not_given_is_what_the_manual_says(void **state)
 {
   (void)state;
@@ -570,7 +548,6 @@ int main(void)
       cmocka_unit_test(compression_of_mazars_mends_nothing),
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(points_spread_the_fracture_energy_over_the_length_of_their_first_strain),
-      cmocka_unit_test(a_point_has_its_length_in_the_step_in_which_it_cracks),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
       cmocka_unit_test(clay_that_was_loaded_elastically_forgets_what_came_before),
