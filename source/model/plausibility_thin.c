@@ -55,14 +55,52 @@ static int thin_wanted(const Domain *d, int32_t place, int32_t other)
   return region->type->laminates && reach > thin_few_rows ? reach + 1 : reach;
 }
 
-/** Returns the index of the block that contains a point; -1: none. */
-static int thin_block(const Body *body, const double point[3])
+/** Returns the square of the distance of a particle from a point [length^2]. */
+static double thin_distance(const Domain *d, int32_t place, const double point[3])
 {
-  for (int k = 0; k < body->block_count; ++k)
-    if (body->blocks[k]->shape &&
-        shape_contains(body->blocks[k]->shape, &body->lattices[k].unit, body->dimensions, point, 0))
-      return k;
-  return -1;
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double apart = d->particles->position[k][place] - point[k];
+    sum += apart * apart;
+  }
+  return sum;
+}
+
+/** Returns the index of the block without a shape, read from a file, to which the particle nearest to a point belongs.
+ *  @param[in,out] near  local index of a particle within about a spacing of the point; the nearest particle, found by
+ *                       descent through families
+ *  @return -1: no such block within a spacing */
+static int thin_block_of_particles(const Domain *d, const double point[3], int32_t *near)
+{
+  const Family *f = &d->family;
+  for (int32_t from = -1; from != *near;) {
+    from = *near;
+    const int64_t slice = from / SLICE;
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      if (!(f->intact[slot] >> from % SLICE & 1)) continue;
+      const int32_t other = family_bond(f, slice, slot, from % SLICE).neighbour;
+      if (!body_outside(&d->body, d->particles->number[other]) &&
+          thin_distance(d, other, point) < thin_distance(d, *near, point))
+        *near = other;
+    }
+  }
+  const double spacing = thin_spacing(d, *near);
+  const int block = d->particles->block[*near / SLICE];
+  return !d->body.blocks[block]->shape && thin_distance(d, *near, point) < spacing * spacing ? block : -1;
+}
+
+/** Returns the index of the block that contains a point; -1: none.
+ *  @param[in,out] near  local index of a particle near the point, as in thin_block_of_particles */
+static int thin_block(const Domain *d, const double point[3], int32_t *near)
+{
+  const Body *body = &d->body;
+  bool of_particles = false;
+  for (int k = 0; k < body->block_count; ++k) {
+    const Shape *shape = body->blocks[k]->shape;
+    if (shape && shape_contains(shape, &body->lattices[k].unit, body->dimensions, point, 0)) return k;
+    of_particles |= !shape;
+  }
+  return of_particles ? thin_block_of_particles(d, point, near) : -1;
 }
 
 /** Returns the index of the material of each block, -1 for a block without particles; NULL: out of memory. */
@@ -120,10 +158,11 @@ static bool thin_cross(const Domain *d, const int32_t *material, int32_t place, 
   const Particles *p = d->particles;
   const double step = spacing / THIN_STEPS, before = 2 * d->body.largest_spacing;
   int inside = 0;
+  int32_t near = place;
   for (int n = 0; (n - layer->wanted * THIN_STEPS) * step < before; ++n) {
     double point[3];
     for (int k = 0; k < 3; ++k) point[k] = p->position[k][place] + n * step * normal[k];
-    const int block = thin_block(&d->body, point);
+    const int block = thin_block(d, point, &near);
     if (block < 0 && inside && thin_goes_on(&d->body, layer->block, normal)) { /* its image, and that of the place */
       layer->ends[1] = layer->ends[0];
       layer->rows = (2 * inside + THIN_STEPS / 2) / THIN_STEPS;

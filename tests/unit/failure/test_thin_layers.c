@@ -132,6 +132,56 @@ static void half_a_layer_counts_with_its_image(void **state)
   }
 }
 
+/** Writes columns of five particles to a CSV file.
+ *  @param[in] first, behind  numbers of the first column and of the one behind the last */
+static void write_columns(const char *name, int first, int behind)
+{
+  const double spacing = 0.005;
+  FILE *table = fopen(name, "w");
+  assert_non_null(table);
+  fputs("x,y,volume\n", table);
+  for (int column = first; column < behind; ++column)
+    for (int row = 0; row < 5; ++row) fprintf(table, "%g,%g,25e-6\n", (column + 0.5) * spacing, (row + 0.5) * spacing);
+  fclose(table);
+}
+
+/** Layers of blocks from files are told as those of blocks with shapes, whichever of the blocks are from files. */
+static void layers_from_files_are_told(void **state)
+{
+  (void)state;
+  static const char *const files[] = {"test_thin_left.csv", "test_thin_layer.csv", "test_thin_right.csv"};
+  for (int rows = 2; rows <= 4; ++rows)
+    for (int from_file = 1; from_file < 8; ++from_file) { /* a bit for each block */
+      const int ends[] = {0, 5, 5 + rows, 10 + rows};
+      char body[3][128];
+      for (int k = 0; k < 3; ++k) {
+        write_columns(files[k], ends[k], ends[k + 1]);
+        if (from_file >> k & 1)
+          snprintf(body[k], sizeof body[k], "file: %s", files[k]);
+        else
+          snprintf(body[k], sizeof body[k], "shape: {box: {from: [%g, 0], to: [%g, 0.025]}}", ends[k] * 0.005,
+                   ends[k + 1] * 0.005);
+      }
+      breccia_model *m = model_of(
+          "units: {length: m, force: N, time: s}\n"
+          "materials: {e: {density: 2400, Young modulus: 30e9, " SOLID
+          "}, w: {density: 2400, Young modulus: 30e9, " MAZARS "}}\nbody:\n"
+          "  l: {material: e, lattice: square, spacing: 0.005, thickness: 1, %s}\n"
+          "  m: {material: w, lattice: square, spacing: 0.005, thickness: 1, %s}\n"
+          "  r: {material: e, lattice: square, spacing: 0.005, thickness: 1, %s}\n"
+          "peridynamics: {space: plane stress, formulation: hybrid, horizon: 3.015 spacings}\n"
+          "loads: [{on: {face: x-}, displacement: [0, 0]}, {on: {face: x+}, displacement: [1e-9, 0], history: {ramp "
+          "to: 1}}]\nsolve: {static: {increments: 1}}\n",
+          body[0], body[1], body[2]);
+      char words[64];
+      snprintf(words, sizeof words, "block 'm' is a layer of %d rows between blocks 'l' and 'r'", rows);
+      if ((strstr(breccia_model_warnings(m), words) != NULL) != (rows < 4))
+        fail_msg("%d rows, files %d: %s", rows, from_file, breccia_model_warnings(m));
+      breccia_model_destroy(&m);
+    }
+  for (int k = 0; k < 3; ++k) remove(files[k]);
+}
+
 /** There is no warning of layers between blocks whose bonds break. */
 static void blocks_that_break_bridge_nothing(void **state)
 {
@@ -145,9 +195,8 @@ static void blocks_that_break_bridge_nothing(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(thin_layers_fail_at_their_strength),
-      cmocka_unit_test(layers_that_blocks_bridge_are_told),
-      cmocka_unit_test(half_a_layer_counts_with_its_image),
+      cmocka_unit_test(thin_layers_fail_at_their_strength), cmocka_unit_test(layers_that_blocks_bridge_are_told),
+      cmocka_unit_test(half_a_layer_counts_with_its_image), cmocka_unit_test(layers_from_files_are_told),
       cmocka_unit_test(blocks_that_break_bridge_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
