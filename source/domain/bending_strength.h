@@ -5,7 +5,8 @@
 
 #include "domain/domain.h"
 
-/** Measured bending strength of a beam over that of a cohesive crack with the same strength, energy and softening curve.
+/** Measured bending strength of a beam over that of a cohesive crack with the same strength, energy and softening
+ *  curve.
  *  @param[in] rows    number of particle rows over the depth
  *  @param[in] depth   depth of the beam over E G_F / f_t^2
  *  @return factor, interpolated in the logarithms of rows and depth, and constant outside the measured range; NaN: the

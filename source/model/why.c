@@ -1,5 +1,5 @@
-/* Report on broken and softened bonds of a result: counts by cause, a line for each requested broken bond, and lines for
- * the most damaged bonds or material points. */
+/* Report on broken and softened bonds of a result: counts by cause, a line for each requested broken bond, and lines
+ * for the most damaged bonds or material points. */
 #include "model/host.h"
 #include "model/sized.h"
 #include "results/broken_bonds.h"

@@ -132,6 +132,14 @@ checks=$((checks + 3))
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"
 
+# The factors of bending strength that `check` tells are those of the measured table.
+sed -n 's/^    {"\([a-z-]*\)", "\([a-z-]*\)", \([0-9]*\), {\([0-9.]*\), \([0-9.]*\), \([0-9.]*\)}},$/\1 \2 \3 \4 \5 \6/p' \
+  "$source/source/domain/bending_strength.c" > "$work/told"
+sed -n '/^<!-- bending strength -->$/,/^<!-- end of bending strength -->$/p' "$source/docs/choosing.md" |
+  awk -F' *[|] *' '$2 ~ /^[a-z]/ && $6 ~ /^[0-9]/ {split($7, a, " "); split($8, b, " "); split($9, c, " "); print $2, $3, $6, a[1], b[1], c[1]}' > "$work/shown"
+[ -s "$work/shown" ] && diff "$work/shown" "$work/told" || fail "source/domain/bending_strength.c has other factors than the table of docs/choosing.md"
+checks=$((checks + 1))
+
 # What `check` is shown to tell is what it tells, the expected time of another machine aside.
 "$breccia" check "$source/examples/notched-beam/beam.yaml" | sed 's/, about [0-9.]* [a-z]*$//' > "$work/told"
 sed -n '/^## What `check` tells/,/^## /p' "$source/docs/choosing.md" | sed -n '/^```$/,/^```$/p' | sed '/^```$/d; s/, about [0-9.]* [a-z]*$//' > "$work/shown"

@@ -276,6 +276,7 @@ loads:
   - {on: {face: x-, layers: 3}, displacement: [0, free]}
   - {on: {nearest: [2.5, 17.5]}, displacement: [free, 0]}
   - {name: pull, on: {face: x+, layers: 3}, displacement: [0.05, free], history: {ramp to: 1}}
+  - {name: side, on: {inside: {box: {from: [150, 0], to: [160, 30]}}}, spring: {stiffness: 1e-6}} # carries round-off
 solve: {static: {increments: 10}}
 pictures: []
 Y

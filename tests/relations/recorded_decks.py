@@ -15,6 +15,13 @@ BULK = {"bulk modulus": "9e3 kPa", "shear modulus": "6e3 kPa"}
 POINTS = ("correspondence", "hybrid")
 FAMILIES = POINTS + ("ordinary",)
 SOFTENS = {"Young modulus": "1e4 kPa", "tensile strength": "30 kPa", "fracture energy": "0.1 kN/m"}
+HARDENS = {
+    "hardening ratio": 0.05,
+    "compression shift": 0.1,
+    "compression range": 0.5,
+    "tension shift": 0.2,
+    "tension range": 0.5,
+}
 LAWS = {
     "elastic": (ELASTIC, {}, FAMILIES + ("micropolar",)),
     "j2": (
@@ -142,23 +149,13 @@ LAWS = {
     ),
     "steel-bilinear": (
         {"Young modulus": "1e4 kPa", "yield stress": "30 kPa"},
-        {
-            "hardening ratio": 0.05,
-            "compression shift": 0.1,
-            "compression range": 0.5,
-            "tension shift": 0.2,
-            "tension range": 0.5,
-        },
+        HARDENS,
         ("bond-based",),
     ),
     "menegotto-pinto": (
         {"Young modulus": "1e4 kPa", "yield stress": "30 kPa"},
         {
-            "hardening ratio": 0.05,
-            "compression shift": 0.1,
-            "compression range": 0.5,
-            "tension shift": 0.2,
-            "tension range": 0.5,
+            **HARDENS,
             "roundness": 18,
             "roundness fall": 0.9,
             "roundness range": 0.2,

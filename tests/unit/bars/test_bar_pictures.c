@@ -320,7 +320,8 @@ static void bars_are_drawn_in_their_colours_over_a_pale_body(void **state)
   result_view_close(&view);
 }
 
-/** Of two bars behind each other the nearer one is seen: a stretched one from the one side, a pressed one from the other. */
+/** Of two bars behind each other the nearer one is seen: a stretched one from the one side, a pressed one from the
+ *  other. */
 static void bars_in_front_hide_those_behind(void **state)
 {
   (void)state;
