@@ -168,7 +168,7 @@ static double force_seconds(Domain *d, int threads)
 {
   use_threads(threads);
   double start = busy_seconds();
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   return busy_seconds() - start;
 }
 

@@ -119,7 +119,7 @@ static double compare(const char *folder, int n, const char *style)
   fclose(f);
   free(path);
   if (read != p->count) fprintf(stderr, "LAMMPS wrote %lld of %lld particles\n", (long long)read, (long long)p->count);
-  domain_forces(&model->domain);
+  domain_evaluate(&model->domain, NULL);
   for (int32_t i = 0; i < p->count; ++i)
     for (int k = 0; k < 3; ++k) {
       double own = p->internal[k][p->place_of[i]] / p->density[p->place_of[i]];

@@ -121,7 +121,7 @@ static int measure(breccia_model *model, const char *formulation, const char *bo
   const double before = resident("VmRSS:");
   LinearSolver solver = {.domain = d, .loading = &model->loading, .unknowns = unknowns_of(d, &model->loading)};
   LinearRecord record;
-  if (domain_linearise(d, NULL)) return 1;
+  if (domain_linearise(d, NULL, NULL)) return 1;
   double start = clock_seconds(), worked = processor_seconds();
   if (linear_solver_create(&solver, way, NULL) || linear_solver_prepare(&solver, NULL)) return 1;
   const double prepared = clock_seconds();

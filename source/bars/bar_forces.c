@@ -29,9 +29,8 @@ static void spread(const Bars *b, double (*const pull)[3], double *const force[3
 }
 
 /** Strains and directions of elements in the concrete, strains without the difference of two lengths that are nearly the same. */
-static void find_strains(Bars *b, int bar, int64_t from, int64_t to)
+static void find_strains(Bars *b, double *const *u, int bar, int64_t from, int64_t to)
 {
-  double *const *u = b->body->particles.displacement;
   for (int64_t e = from; e < to; ++e) {
     const double *rest = b->rest[e], length = b->length[e];
     double d[3], more = 0, square = 0, now[3];
@@ -48,18 +47,18 @@ static void find_strains(Bars *b, int bar, int64_t from, int64_t to)
   }
 }
 
-void bars_resist(void *forces)
+void bars_resist(void *forces, double *const *displacement, double *const *internal)
 {
   Bars *b = forces;
   TEAM_FOR (n, b->slips ? b->specs->count : 0) {
     if (!bar_slips(b, (int)n)) continue;
-    find_strains(b, (int)n, b->first[n], b->first[n + 1]);
+    find_strains(b, displacement, (int)n, b->first[n], b->first[n + 1]);
     bar_find_slips(b, (int)n);
   }
   const bool ahead = b->has_points && points_ask_ahead(&b->points);
   TEAM_FOR (c, b->chunk_count) {
     const int64_t from = b->chunk[c], to = b->chunk[c + 1];
-    if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, b->chunk_bar[c], from, to);
+    if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, displacement, b->chunk_bar[c], from, to);
     double *const strain[6] = {b->strain + from};
     if (ahead && b->served[b->chunk_bar[c]]) points_send(&b->points, from, (int)(to - from), strain);
   }
@@ -76,7 +75,7 @@ void bars_resist(void *forces)
       for (int k = 0; k < 3; ++k) b->pull[e][k] = b->area[e] * b->stress[e] * b->along[e][k];
   }
   TEAM_FOR (c, b->bends ? b->chunk_count : 0) bar_bend(b, b->chunk[c], b->chunk[c + 1]);
-  spread(b, b->pull, b->body->particles.internal);
+  spread(b, b->pull, internal);
 }
 
 /* ---- changes ---- */

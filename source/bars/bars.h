@@ -205,7 +205,7 @@ void bars_note(Bars *bars);
 void bar_try_stresses(Bars *bars, int bar);
 
 /* bar_forces.c: as ForcesType says. */
-void bars_resist(void *forces);
+void bars_resist(void *forces, double *const *displacement, double *const *internal);
 void bars_linearise(void *forces);
 void bars_change(void *forces, double *const v[3], double *const change[3]);
 int64_t bars_point_count(const void *forces);

@@ -155,7 +155,7 @@ void contact_search(Contact *contact);
 void contact_follow(Contact *contact, double motion);
 
 /** Adds the forces per volume on the particles, by all threads; trial state only. */
-void contact_resist(Contact *contact);
+void contact_resist(Contact *contact, double *const *displacement, double *const *internal);
 
 /** Chooses the faces that the next evaluation would, at the displacements held. By one thread. */
 void contact_choose_faces(Contact *contact);

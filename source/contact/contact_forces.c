@@ -47,9 +47,9 @@ static void find_again(void *forces)
   contact_search(forces);
 }
 
-static void resist(void *forces)
+static void resist(void *forces, double *const *displacement, double *const *internal)
 {
-  contact_resist(forces);
+  contact_resist(forces, displacement, internal);
 }
 
 static void choose(void *forces)

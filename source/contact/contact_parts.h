@@ -46,10 +46,9 @@ static inline void reference_way(const Particles *p, int32_t a, int32_t b, doubl
   for (int k = 0; k < 3; ++k) way[k] = p->position[k][b] - p->position[k][a];
 }
 
-static inline void present_way(const Particles *p, int32_t a, int32_t b, double way[3])
+static inline void present_way(const Particles *p, double *const *u, int32_t a, int32_t b, double way[3])
 {
-  for (int k = 0; k < 3; ++k)
-    way[k] = p->position[k][b] - p->position[k][a] + (p->displacement[k][b] - p->displacement[k][a]);
+  for (int k = 0; k < 3; ++k) way[k] = p->position[k][b] - p->position[k][a] + (u[k][b] - u[k][a]);
 }
 
 /* Pairs (contact.c). */
@@ -65,13 +64,14 @@ void contact_keep(Contact *c);
 
 /* Faces (faces.c). */
 /** Finds the shape of the family of a row, if it has changed, and how it is deformed. */
-void contact_find_frame(const Contact *c, ContactRow *row);
+void contact_find_frame(const Contact *c, double *const *u, ContactRow *row);
 /** Adds the face of a cut, once. */
 void contact_add_cut(ContactRow *row, const double normal[3], double level, double tolerance);
 /** Adds the other faces: of lost bonds, open sides; and the depth below them. */
 void contact_find_faces(const Contact *c, ContactRow *row);
 /** Chooses the face between both ends of a pair that does not press, and its rest. */
-void contact_choose(const Contact *c, const ContactRow *row, const ContactRow *other, ContactPair *pair);
+void contact_choose(const Contact *c, double *const *u, const ContactRow *row, const ContactRow *other,
+                    ContactPair *pair);
 /** Which plane of a cut parts two rows: one of their faces in which they lie against each other; or -1. */
 int contact_common_cut(const Contact *c, const ContactRow *row, const ContactRow *other);
 
@@ -82,11 +82,11 @@ double contact_reach(const Contact *c, const ContactPair *pair, int32_t place);
 double contact_cut_reach(const Contact *c);
 double contact_met_reach(double spacing);
 /** The pair as it stands, or with the frames before bonds broke. @return whether it presses */
-bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                   bool before, Press *press);
+bool contact_press(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                   const ContactPair *pair, bool before, Press *press);
 /** The same of a pair that presses or whose ends are no further apart than a share of their rest beyond it; without energy. */
-bool contact_touch(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                   double apart, Press *press);
+bool contact_touch(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                   const ContactPair *pair, double apart, Press *press);
 /** From the derivative a by cof(F) N that by F, times the shape of the family: what the family is pulled with. */
 void contact_find_pull(const double f[9], const double shape[9], const double a[9], double pull[9]);
 /** Adds what the steps of joints do to arrays of forces per volume, by all threads. */

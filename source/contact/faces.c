@@ -48,7 +48,7 @@ static void find_cofactor(Frame *frame)
     }
 }
 
-void contact_find_frame(const Contact *c, ContactRow *row)
+void contact_find_frame(const Contact *c, double *const *u, ContactRow *row)
 {
   const Family *f = c->family;
   const Particles *p = f->particles;
@@ -68,8 +68,7 @@ void contact_find_frame(const Contact *c, ContactRow *row)
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
     for (int i = 0; i < 3; ++i) {
-      const double eta =
-          p->volume[bond.neighbour] * (p->displacement[i][bond.neighbour] - p->displacement[i][row->place]);
+      const double eta = p->volume[bond.neighbour] * (u[i][bond.neighbour] - u[i][row->place]);
       for (int j = 0; j < 3; ++j) moment[3 * i + j] += eta * bond.xi[j];
     }
   }
@@ -198,10 +197,11 @@ static bool present_face(const ContactRow *row, const double normal[3], double s
 }
 
 /** The faces that lie against each other, or else the one face, across which two rows are farthest apart, as convex bodies are. */
-static void choose_met(const Contact *c, const ContactRow *low, const ContactRow *high, ContactPair *pair)
+static void choose_met(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                       ContactPair *pair)
 {
   double way[3], most = -INFINITY;
-  present_way(&c->body->particles, low->place, high->place, way);
+  present_way(&c->body->particles, u, low->place, high->place, way);
   const double least = least_cosine * sqrt(dot(way, way));
   memset(pair->normal, 0, sizeof pair->normal);
   for (int both = 1; both >= 0 && most == -INFINITY; --both)
@@ -226,17 +226,19 @@ static void choose_met(const Contact *c, const ContactRow *low, const ContactRow
   pair->depth = low->depth + high->depth;
 }
 
-void contact_choose(const Contact *c, const ContactRow *row, const ContactRow *other, ContactPair *pair)
+void contact_choose(const Contact *c, double *const *u, const ContactRow *row, const ContactRow *other,
+                    ContactPair *pair)
 {
   const ContactRow *low = pair->low ? row : other, *high = pair->low ? other : row;
   Press press;
-  if (pair->kind == PAIR_BROKEN || (pair->kind != PAIR_NEW && contact_press(c, low, high, pair, false, &press))) return;
+  if (pair->kind == PAIR_BROKEN || (pair->kind != PAIR_NEW && contact_press(c, u, low, high, pair, false, &press)))
+    return;
   const int cut = pair->bond ? -1 : contact_common_cut(c, low, high);
   if (cut >= 0) {
     pair->kind = PAIR_CUT;
     for (int k = 0; k < 3; ++k) pair->normal[0][k] = pair->normal[1][k] = low->face[cut][k];
   } else if (!pair->bond) {
-    choose_met(c, low, high, pair);
+    choose_met(c, u, low, high, pair);
   }
   if (pair->kind == PAIR_CUT) {
     /* To the last bit as contact_press measures it in the reference, where nothing must press. */
@@ -250,5 +252,5 @@ void contact_choose(const Contact *c, const ContactRow *row, const ContactRow *o
     pair->depth = make_unit(normal) ? dot(xi, normal) : sqrt(dot(xi, xi));
   }
   pair->rest = pair->depth;
-  if (contact_press(c, low, high, pair, false, &press)) pair->rest = press.across;
+  if (contact_press(c, u, low, high, pair, false, &press)) pair->rest = press.across;
 }

@@ -123,13 +123,13 @@ static void find_stiffness(const Contact *c, const ContactRow *low, const Contac
 }
 
 /** Distances and directions of a pair. @return false if nothing is known of it yet */
-static bool measure(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                    bool before, Press *press)
+static bool measure(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                    const ContactPair *pair, bool before, Press *press)
 {
   double *nu = press->long_normal;
   press->stiffness = press->slope = press->energy = press->gap = 0;
   if (pair->kind == PAIR_NEW) return false;
-  present_way(&c->body->particles, low->place, high->place, press->way);
+  present_way(&c->body->particles, u, low->place, high->place, press->way);
   const double *one = before ? low->before.cofactor : low->frame.cofactor;
   const double *two = before ? high->before.cofactor : high->frame.cofactor;
   for (int k = 0; k < 3; ++k)
@@ -145,30 +145,31 @@ static bool measure(const Contact *c, const ContactRow *low, const ContactRow *h
   return true;
 }
 
-bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                   bool before, Press *press)
+bool contact_press(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                   const ContactPair *pair, bool before, Press *press)
 {
-  if (!measure(c, low, high, pair, before, press) || !(press->gap > 0)) return false;
+  if (!measure(c, u, low, high, pair, before, press) || !(press->gap > 0)) return false;
   find_stiffness(c, low, high, pair, press);
   press->energy = press->stiffness * press->gap * press->gap / 2;
   return press->stiffness > 0;
 }
 
-bool contact_touch(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                   double apart, Press *press)
+bool contact_touch(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                   const ContactPair *pair, double apart, Press *press)
 {
-  if (!measure(c, low, high, pair, false, press) || !(press->gap > -apart * pair->rest)) return false;
+  if (!measure(c, u, low, high, pair, false, press) || !(press->gap > -apart * pair->rest)) return false;
   find_stiffness(c, low, high, pair, press);
   return press->stiffness > 0;
 }
 
 /** Lets the energy of a pair stay as it was before bonds broke around it. */
-static void keep_energy(const Contact *c, const ContactRow *low, const ContactRow *high, ContactPair *pair)
+static void keep_energy(const Contact *c, double *const *u, const ContactRow *low, const ContactRow *high,
+                        ContactPair *pair)
 {
   Press old, now;
   if (pair->kind == PAIR_BROKEN || pair->kind == PAIR_NEW) return;
-  const bool pressed = contact_press(c, low, high, pair, true, &old);
-  const bool presses = contact_press(c, low, high, pair, false, &now);
+  const bool pressed = contact_press(c, u, low, high, pair, true, &old);
+  const bool presses = contact_press(c, u, low, high, pair, false, &now);
   find_stiffness(c, low, high, pair, &now);
   if (pressed && now.stiffness > 0)
     pair->rest = now.across + sqrt(2 * old.energy / now.stiffness);
@@ -178,13 +179,13 @@ static void keep_energy(const Contact *c, const ContactRow *low, const ContactRo
 
 /* ---- sweeps over rows ---- */
 
-static void look_around(const Contact *c, ContactRow *row)
+static void look_around(const Contact *c, double *const *u, ContactRow *row)
 {
   row->near = row->framed = c->choosing;
   for (int32_t n = 0; n < row->count && !(row->near && row->framed); ++n) {
     const ContactPair *pair = &row->pairs[n];
     double y[3];
-    present_way(&c->body->particles, row->place, pair->neighbour, y);
+    present_way(&c->body->particles, u, row->place, pair->neighbour, y);
     const double reach = contact_reach(c, pair, row->place);
     if (!(dot(y, y) < reach * reach)) continue;
     row->near = true;
@@ -194,14 +195,14 @@ static void look_around(const Contact *c, ContactRow *row)
     contact_find_faces(c, row);
     row->faceless = false;
   }
-  if (row->framed && !(c->remembered && !row->stale)) contact_find_frame(c, row);
+  if (row->framed && !(c->remembered && !row->stale)) contact_find_frame(c, u, row);
 }
 
 void contact_remember(Contact *c)
 {
   if (!c->spec) return;
   TEAM_FOR (r, c->row_count) {
-    look_around(c, &c->rows[r]);
+    look_around(c, c->body->particles.displacement, &c->rows[r]);
     c->rows[r].before = c->rows[r].frame;
   }
   TEAM_SINGLE
@@ -211,19 +212,19 @@ void contact_remember(Contact *c)
   }
 }
 
-static void choose_row(const Contact *c, const ContactRow *row)
+static void choose_row(const Contact *c, double *const *u, const ContactRow *row)
 {
   for (int32_t n = 0; n < row->count; ++n)
-    contact_choose(c, row, &c->rows[c->row_of[row->pairs[n].neighbour]], &row->pairs[n]);
+    contact_choose(c, u, row, &c->rows[c->row_of[row->pairs[n].neighbour]], &row->pairs[n]);
 }
 
-static void keep_row(const Contact *c, const ContactRow *row)
+static void keep_row(const Contact *c, double *const *u, const ContactRow *row)
 {
   for (int32_t n = 0; n < row->count; ++n) {
     const ContactRow *other = &c->rows[c->row_of[row->pairs[n].neighbour]];
     if (!row->torn && !other->torn) continue;
     const bool low = row->pairs[n].low;
-    keep_energy(c, low ? row : other, low ? other : row, &row->pairs[n]);
+    keep_energy(c, u, low ? row : other, low ? other : row, &row->pairs[n]);
   }
 }
 
@@ -272,7 +273,7 @@ static void mark_family(Contact *c, const ContactRow *row)
 }
 
 /** Energy and acts of the pairs whose lower end a row is. @param[in] only_energy  of the committed state */
-static void press_row(Contact *c, ContactRow *row, bool only_energy)
+static void press_row(Contact *c, double *const *u, ContactRow *row, bool only_energy)
 {
   const Particles *p = &c->body->particles;
   row->slid = row->stored = 0;
@@ -293,7 +294,7 @@ static void press_row(Contact *c, ContactRow *row, bool only_energy)
     if (after) after->known = false;
     if (only_energy && before && before->known) row->stored += volumes * dot(before->spring, before->spring) / 2;
     if (!row->near || !other->near) continue; /* nor did it press before: rows reach far beyond */
-    const bool presses = contact_press(c, row, other, pair, false, &m);
+    const bool presses = contact_press(c, u, row, other, pair, false, &m);
     if (after) {
       row->slid += volumes * contact_grip(before, after, &m, c->spec->friction);
       row->stored += volumes * dot(after->spring, after->spring) / 2;
@@ -385,8 +386,9 @@ void contact_spread_change(Contact *c, double *const change[3])
 static void look_and_choose(void *context)
 {
   Contact *c = context;
-  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
-  TEAM_FOR (r, c->row_count) choose_row(c, &c->rows[r]);
+  double *const *u = c->body->particles.displacement;
+  TEAM_FOR (r, c->row_count) look_around(c, u, &c->rows[r]);
+  TEAM_FOR (r, c->row_count) choose_row(c, u, &c->rows[r]);
 }
 
 void contact_choose_faces(Contact *c)
@@ -396,31 +398,32 @@ void contact_choose_faces(Contact *c)
   c->choosing = false;
 }
 
-void contact_resist(Contact *c)
+void contact_resist(Contact *c, double *const *u, double *const *internal)
 {
   if (!c->spec) return;
   const bool choosing = c->choosing, keeping = c->torn && c->remembered; /* before anyone changes them */
-  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
+  TEAM_FOR (r, c->row_count) look_around(c, u, &c->rows[r]);
   if (choosing) {
-    TEAM_FOR (r, c->row_count) choose_row(c, &c->rows[r]);
+    TEAM_FOR (r, c->row_count) choose_row(c, u, &c->rows[r]);
   }
   if (keeping) {
-    TEAM_FOR (r, c->row_count) keep_row(c, &c->rows[r]);
+    TEAM_FOR (r, c->row_count) keep_row(c, u, &c->rows[r]);
   }
   TEAM_SINGLE
   {
     for (int32_t r = 0; r < c->row_count && c->torn; ++r) c->rows[r].torn = false;
     c->choosing = c->torn = c->remembered = false;
   }
-  TEAM_FOR (r, c->row_count) press_row(c, &c->rows[r], false);
-  spread(c, &(Doing){c->acts, false, c->body->particles.internal});
+  TEAM_FOR (r, c->row_count) press_row(c, u, &c->rows[r], false);
+  spread(c, &(Doing){c->acts, false, internal});
 }
 
 static void find_stored(void *context)
 {
   Contact *c = context;
-  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
-  TEAM_FOR (r, c->row_count) press_row(c, &c->rows[r], true);
+  double *const *u = c->body->particles.displacement;
+  TEAM_FOR (r, c->row_count) look_around(c, u, &c->rows[r]);
+  TEAM_FOR (r, c->row_count) press_row(c, u, &c->rows[r], true);
 }
 
 /** Sum over rows in the order of places: they stand in the order of events, which a restart does not know. */

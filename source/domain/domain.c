@@ -106,12 +106,12 @@ void domain_give_way(Domain *d, bool give)
     domain_leave_tensors(d, false);
     d->regions[0].type->give_way(d->regions[0].formulation);
   } else
-    domain_show_states(d);
+    domain_show_states(d, NULL);
 }
 
 void domain_stop_observing(Domain *d)
 {
-  if (d->leaves_tensors && !d->tensors_are_old) domain_show_states(d);
+  if (d->leaves_tensors && !d->tensors_are_old) domain_show_states(d, NULL);
 }
 
 int domain_observe(Domain *d, Error *error)

@@ -161,14 +161,15 @@ typedef struct Domain {
   double energy_at_limit, energy_held;
   Torn *torn;
   int64_t torn_count, torn_capacity;
-  uint8_t *is_torn;      /* [places] 1, or 2 where its family carries less from this step on */
-  int64_t broken_before; /* bonds, at the beginning of the step under way */
-  bool any_suspect;      /* in the step under way */
-  bool out_of_memory;    /* while bonds broke */
-  double force_sum;      /* of all internal force components' magnitudes, as of the last domain_forces */
-  double *batch_sum;     /* [batches] */
-  int64_t *batch_failed; /* [batches] */
-  int64_t failed_place;  /* whose law could not be integrated, or -1 */
+  uint8_t *is_torn;             /* [places] 1, or 2 where its family carries less from this step on */
+  int64_t broken_before;        /* bonds, at the beginning of the step under way */
+  bool any_suspect;             /* in the step under way */
+  bool out_of_memory;           /* while bonds broke */
+  double force_sum;             /* of all internal force components' magnitudes, as of the last domain_forces */
+  double *batch_sum;            /* [batches] */
+  int64_t *batch_failed;        /* [batches] */
+  int64_t failed_place;         /* whose law could not be integrated, or -1 */
+  double *const *linearised_at; /* rows of displacements of the last domain_linearise */
 } Domain;
 
 typedef struct DomainSpec {
@@ -200,13 +201,34 @@ bool region_has_material(const Domain *domain, const Region *region, const char 
 int domain_create(Domain *domain, const DeckReader *reader, const DomainSpec *spec);
 void domain_destroy(Domain *domain);
 
-/** Internal forces at the displacements held, by all threads. Trial state only. */
-void domain_forces(Domain *domain);
-/** The same, called by one thread and done by the team that it uses. */
-void domain_evaluate(Domain *domain);
+/** State at which forces are evaluated, and where they are written: rows over places, as many as particles have motions
+ *  (places_array). */
+typedef struct Evaluation {
+  double *const *displacement;  /* displacements; in a linearised step their changes, 0 in unused places */
+  double *const *linearised_at; /* displacements of the last domain_linearise; NULL: the evaluation is nonlinear */
+  double *const *internal;      /* written: forces and moments per volume; in a linearised step their changes */
+} Evaluation;
 
-/** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
-void domain_show_states(Domain *domain);
+/** Returns the evaluation at the displacements held, into the particles' own forces. */
+Evaluation domain_present(const Domain *domain);
+
+/** Evaluates forces, by all threads. Trial histories, strains and stresses of points, and what particles show their
+ *  neighbours, are then of this evaluation; committed histories stay.
+ *
+ *  A linearised step writes the changes K v of internal forces, at the price of one evaluation; forces beside those of
+ *  bonds are not in it (domain_change_forces). What particles show their neighbours is of the step afterwards
+ *  (domain_show_states). */
+void domain_forces(Domain *domain, const Evaluation *of);
+/** The same, called by one thread and done by the team that it uses.
+ *  @param[in] of  NULL: domain_present
+ *  @return BRECCIA_FAILURE, without a message, of a nonlinear evaluation after which domain_has_forces is false */
+int domain_evaluate(Domain *domain, const Evaluation *of);
+/** Returns true if the last nonlinear evaluation found finite forces and all laws were integrated. */
+bool domain_has_forces(const Domain *domain);
+
+/** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked.
+ *  @param[in] displacement  rows of displacements; NULL: those held */
+void domain_show_states(Domain *domain, double *const *displacement);
 
 /** Lets linearised steps take secants where laws soften, or no longer: those who iterate come on by them where points soften and
  *  unload in turn, if slowly. @return whether the body has bonds of such laws */
@@ -214,22 +236,21 @@ bool domain_take_secants(Domain *domain, Secants of);
 /** Whether linearised steps are secants anyway, of what is damaged. */
 bool domain_has_secants(const Domain *domain);
 
-/** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
-int domain_linearise(Domain *domain, Error *error);
-/** K v: changes of internal forces per volume with changes v of the displacements, at those at which the domain was linearised, which are
- *  held still, at the price of one evaluation of forces. Forces beside those of bonds are not in it. What particles show their neighbours is of the step afterwards
- *  (domain_show_states).
- *  @param[in] v        arrays of places_array, 0 in unused places
- *  @param[out] change  arrays of places_array */
+/** Evaluates forces into the particles' own rows and keeps what linearised steps need of that: tangents of laws among it.
+ *  @param[in] displacement  rows of displacements, which stay as they are until the last linearised step; NULL: those
+ *                           held */
+int domain_linearise(Domain *domain, double *const *displacement, Error *error);
+/** A linearised step: changes K v of internal forces with changes v of displacements (domain_forces). */
 void domain_linear_step(Domain *domain, double *const *v, double *const *change);
 
 /** Adds changes of the forces beside those of bonds to those of a linearised step, at the state at which forces_linearise was called.
  *  @param[in,out] change  arrays of places_array */
 void domain_change_forces(Domain *domain, double *const v[3], double *const change[3]);
 
-/** Forces per volume beside those of bonds at the displacements held; trial state only.
- *  @param[out] forces  arrays of places_array */
-void domain_forces_beside(Domain *domain, double *const forces[3]);
+/** Forces per volume beside those of bonds; trial state only.
+ *  @param[in] displacement  rows of displacements; NULL: those held
+ *  @param[out] forces       arrays of places_array */
+void domain_forces_beside(Domain *domain, double *const *displacement, double *const forces[3]);
 
 /** Rows of particles, points, bonds and forces. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
  *  deformations and force states follow to the same bits. */

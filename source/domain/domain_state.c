@@ -71,7 +71,7 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   for (int r = 0; r < d->region_count; ++r) CHECK(points_is_valid(&d->regions[r].points));
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
   if (d->strains.loading) loading_forget_strains(d->strains.loading); /* those of bars came back as well */
-  domain_show_states(d);
+  domain_show_states(d, NULL);
   forces_find_again(&d->forces);
   return BRECCIA_OK;
 }

@@ -373,7 +373,7 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
   for (int r = 0; r < d->region_count && !status; ++r) status = begin_region(w, &d->regions[r]);
   if (status) return status;
   count_stressed(w);
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   d->initial_energy = domain_stored_energy(d);
   return BRECCIA_OK;
 }
@@ -384,7 +384,7 @@ static int store_by_laws(Domain *d)
   bool may = false;
   for (int r = 0; r < d->region_count; ++r) may |= d->regions[r].points.components == 1;
   if (!may) return BRECCIA_OK;
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   d->initial_energy = domain_stored_energy(d);
   return BRECCIA_OK;
 }

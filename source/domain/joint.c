@@ -56,7 +56,7 @@ void joint_destroy(Joint *joint)
   free(joint->bonds);
 }
 
-void joint_resist(const Domain *d, double *const *at)
+void joint_resist(const Domain *d, const Evaluation *of)
 {
   const Joint *joint = &d->joint;
   const Particles *p = d->particles;
@@ -68,11 +68,11 @@ void joint_resist(const Domain *d, double *const *at)
       if (!(d->family.intact[bond->slot] >> place % SLICE & 1)) continue;
       const Region *region = domain_region(d, bond->neighbour);
       double state[3];
-      region->type->half_state(region->formulation, at, bond->neighbour / SLICE, bond->back, bond->neighbour % SLICE,
-                               state);
+      region->type->half_state(region->formulation, of->displacement, of->linearised_at, bond->neighbour / SLICE,
+                               bond->back, bond->neighbour % SLICE, state);
       for (int k = 0; k < 3; ++k) force[k] += state[k] * p->volume[bond->neighbour];
     }
-    for (int k = 0; k < 3; ++k) p->internal[k][place] -= force[k];
+    for (int k = 0; k < 3; ++k) of->internal[k][place] -= force[k];
   }
 }
 
@@ -81,9 +81,10 @@ void domain_bond_force(const Domain *d, int64_t slice, int64_t slot, int lane, d
   const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(&d->family, slice, slot, lane).neighbour;
   const Region *own = domain_region(d, place), *their = domain_region(d, other);
   double back[3];
-  own->type->half_state(own->formulation, NULL, slice, slot, lane, force);
-  their->type->half_state(their->formulation, NULL, other / SLICE, family_slot(&d->family, other, place), other % SLICE,
-                          back);
+  double *const *u = d->particles->displacement;
+  own->type->half_state(own->formulation, u, NULL, slice, slot, lane, force);
+  their->type->half_state(their->formulation, u, NULL, other / SLICE, family_slot(&d->family, other, place),
+                          other % SLICE, back);
   for (int k = 0; k < 3; ++k) force[k] -= back[k];
 }
 

@@ -44,7 +44,7 @@ size_t window_bytes(const Domain *domain, const Region *region);
 /** Finds the bonds between regions. */
 int joint_create(Joint *joint, const Domain *domain, Error *error);
 void joint_destroy(Joint *joint);
-/** Takes from the forces what the neighbours in other regions give by their own formulations, by all threads. @param[in] at  as in Sweep */
-void joint_resist(const Domain *domain, double *const *at);
+/** Takes from the forces what the neighbours in other regions give by their own formulations, by all threads. */
+void joint_resist(const Domain *domain, const Evaluation *of);
 
 #endif

@@ -152,7 +152,7 @@ static double tension_at(const Domain *d, int64_t place)
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
     double state[3], along = 0, square = 0;
-    region->type->half_state(region->formulation, NULL, slice, slot, (int)(place % SLICE), state);
+    region->type->half_state(region->formulation, p->displacement, NULL, slice, slot, (int)(place % SLICE), state);
     for (int k = 0; k < 3; ++k) {
       const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
       along += state[k] * y;
@@ -234,7 +234,7 @@ double domain_strain_work(const Domain *d)
 static int add_elastic_forces(Domain *d, double factor, double *const *force, Error *error)
 {
   const Particles *p = d->particles;
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   if (!isfinite(d->force_sum)) {
     const char *stuck = forces_stuck(&d->forces, NULL);
     if (stuck)

@@ -9,20 +9,20 @@
 
 /** What a sweep is for. */
 typedef struct Purpose {
-  double *const *at; /* NULL, or displacements at which a linearised step was made */
-  bool no_law;       /* stresses are as they should be */
-  bool observes;     /* strains and stresses are written that evaluations leave out */
-  unsigned without;  /* phases that write any of these are left out */
+  const Evaluation *of;
+  bool no_law;      /* stresses are as they should be */
+  bool observes;    /* strains and stresses are written that evaluations leave out */
+  unsigned without; /* phases that write any of these are left out */
 } Purpose;
 
 /** Not finite if any force of the batch is not. */
 BRECCIA_CLONES
-static double force_magnitude(const Particles *p, const Batch *batch)
+static double force_magnitude(double *const *internal, int motions, const Batch *batch)
 {
   Lanes sum = {0};
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < motions; ++k)
     for (int64_t place = batch->first * SLICE; place < batch->last * SLICE; place += LANES)
-      sum += lanes_absolute(lanes_load(p->internal[k] + place));
+      sum += lanes_absolute(lanes_load(internal[k] + place));
   return lanes_total(sum);
 }
 
@@ -60,10 +60,38 @@ static Group group_from(const Domain *d, const Region *region, int from, double 
   return group;
 }
 
-static void run_phases(const Region *region, int from, int to, const Sweep *sweep, const Purpose *purpose)
+/** Returns true if the evaluation is a linearised step. */
+static bool is_linear(const Purpose *purpose)
 {
-  for (int p = from; p < to; ++p)
-    if (!(region->type->phases[p].writes & purpose->without)) region->type->phases[p].run(region->formulation, sweep);
+  return purpose->of->linearised_at != NULL;
+}
+
+/** Returns a sweep over slices first .. last - 1 with the rows of an evaluation. */
+static Sweep sweep_of(const Purpose *purpose, int64_t first, int64_t last)
+{
+  return (Sweep){.first = first,
+                 .last = last,
+                 .displacement = purpose->of->displacement,
+                 .linearised_at = purpose->of->linearised_at,
+                 .internal = purpose->of->internal};
+}
+
+/** Runs phases `from` .. `to` - 1. @return -1, or a place at which a phase has failed */
+static int64_t run_phases(const Region *region, int from, int to, const Sweep *sweep, const Purpose *purpose)
+{
+  int64_t failed = -1;
+  for (int p = from; p < to; ++p) {
+    if (region->type->phases[p].writes & purpose->without) continue;
+    const int64_t place = region->type->phases[p].run(region->formulation, sweep);
+    if (failed < 0) failed = place;
+  }
+  return failed;
+}
+
+/** Notes the first failure of a batch. @param[in] place  -1: none */
+static void note_failure(Domain *d, int64_t batch, int64_t place)
+{
+  if (place >= 0 && d->batch_failed[batch] < 0) d->batch_failed[batch] = place;
 }
 
 /** Writes what a batch has found for those who look. */
@@ -84,32 +112,30 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   Points *points = &region->points;
   const int64_t first = slices->first * SLICE;
   const int count = (int)(slices->last * SLICE - first);
-  const bool leaves = d->leaves_tensors || purpose->observes, apart = purpose->at || leaves;
-  Sweep sweep = {.first = slices->first,
-                 .last = slices->last,
-                 .carry = carry,
-                 .no_law = purpose->no_law && !leaves,
-                 .at = purpose->at,
-                 .window = group->window,
-                 .window_slices = region->window.slices};
-  if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
+  const bool leaves = d->leaves_tensors || purpose->observes, linear = is_linear(purpose), apart = linear || leaves;
+  Sweep sweep = sweep_of(purpose, slices->first, slices->last);
+  sweep.carry = carry;
+  sweep.no_law = purpose->no_law && !leaves;
+  sweep.window = group->window;
+  sweep.window_slices = region->window.slices;
+  if (linear && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
     sweep.strain[k] = apart ? change + k * BATCH : points->strain[k] + first;
     sweep.stress[k] = apart ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
-  run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
+  note_failure(d, batch, run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose));
   if (group->law < 0) return;
   if (send) {
     points_send(points, first, count, sweep.strain);
     return;
   }
   if (points_on_particles(points)) {
-    if (purpose->at)
+    if (linear)
       points_change(points, first, count, sweep.strain, sweep.stress);
     else if (!sweep.no_law)
-      d->batch_failed[batch] = points_update(points, first, count, sweep.strain, sweep.stress);
+      note_failure(d, batch, points_update(points, first, count, sweep.strain, sweep.stress));
   }
-  run_phases(region, group->law, group->to, &sweep, purpose);
+  note_failure(d, batch, run_phases(region, group->law, group->to, &sweep, purpose));
   if (purpose->observes) keep_tensors(d, first, count, change);
 }
 
@@ -153,9 +179,11 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
   _Alignas(64) double carry[CARRY * BATCH], change[12 * BATCH];
   Points *points = &region->points;
   const int components = points->components;
-  const bool kept = components == 6 && !purpose->at; /* strains and stresses stay in the rows */
-  Sweep sweep = {.carry = carry, .no_law = purpose->no_law, .at = purpose->at};
-  if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
+  const bool linear = is_linear(purpose), kept = components == 6 && !linear; /* strains and stresses stay in the rows */
+  Sweep sweep = sweep_of(purpose, 0, 0);
+  sweep.carry = carry;
+  sweep.no_law = purpose->no_law;
+  if (linear && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   const BondList *bonds = &region->bonds;
   int64_t failed = -1;
   for (int64_t slice = d->batches[batch].first; slice < d->batches[batch].last; ++slice) {
@@ -171,50 +199,56 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
         sweep.stress[k] = kept ? points->stress[k] + sweep.row : change + (6 + k) * BATCH;
       }
       if (points->takes_lateral) sweep.strain[1] = change + BATCH;
-      run_phases(region, group->from, group->law, &sweep, purpose);
+      note_failure(d, batch, run_phases(region, group->from, group->law, &sweep, purpose));
       if (send) {
         points_send(points, sweep.row, sweep.rows, sweep.strain);
         continue;
       }
-      if (purpose->at)
+      if (linear)
         points_change(points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
       else if (!purpose->no_law)
         failed = update_bonds(d, region, &sweep, failed);
-      run_phases(region, group->law, group->to, &sweep, purpose);
+      note_failure(d, batch, run_phases(region, group->law, group->to, &sweep, purpose));
     }
   }
-  if (!purpose->at && !purpose->no_law) d->batch_failed[batch] = failed;
+  note_failure(d, batch, failed);
 }
 
 /** Brings the window of a group that has one to what a batch reads. By each thread in the order of its batches. */
-static void fill_window(const Region *region, Group *group, int64_t batch, const Purpose *purpose)
+static void fill_window(Domain *d, const Region *region, Group *group, int64_t batch, const Purpose *purpose)
 {
   if (group->ahead < 0) return;
   const Window *w = &region->window;
   const int64_t low = w->low[batch - region->first_batch], end = w->high[batch - region->first_batch] + 1;
   if (group->filled < low) group->filled = low;
   if (group->filled >= end) return;
-  const Sweep sweep = {
-      .first = group->filled, .last = end, .at = purpose->at, .window = group->window, .window_slices = w->slices};
-  run_phases(region, group->ahead, group->ahead + 1, &sweep, purpose);
+  Sweep sweep = sweep_of(purpose, group->filled, end);
+  sweep.window = group->window;
+  sweep.window_slices = w->slices;
+  note_failure(d, batch, run_phases(region, group->ahead, group->ahead + 1, &sweep, purpose));
   group->filled = end;
 }
 
 static void run_group(Domain *d, Region *region, Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  fill_window(region, group, batch, purpose);
+  fill_window(d, region, group, batch, purpose);
   const bool rows = region->points.on_bonds && (region->points.components == 1 || points_keep_tensors(&region->points));
   if (group->law < 0 || !rows)
     run_places(d, region, group, batch, purpose, send);
-  else if (region->points.components == 6 || (!purpose->at && !purpose->no_law)) /* fibres keep their pulls */
+  else if (region->points.components == 6 || (!is_linear(purpose) && !purpose->no_law)) /* fibres keep their pulls */
     run_bonds(d, region, group, batch, purpose, send);
+}
+
+static void sum_forces(Domain *d, const Purpose *purpose, int64_t b)
+{
+  d->batch_sum[b] = force_magnitude(purpose->of->internal, d->particles->motions, &d->batches[b]);
 }
 
 /** Phases of a batch that have waited for lower batches. */
 static void finish_batch(Domain *d, Region *region, Group *group, int64_t b, const Purpose *purpose, unsigned writes)
 {
   run_group(d, region, group, b, purpose, false);
-  if (writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
+  if (writes & OF_FORCES) sum_forces(d, purpose, b);
 }
 
 /** Batches of a thread, from a first one on, that close after those of all threads: those with neighbours in the shares of others, and as many more as
@@ -245,14 +279,14 @@ static bool closes_later(const Domain *d, Later *later, int64_t n)
 }
 
 /** Where bonds have broken: the same again for batches whose families turn out to carry less, with the stresses that laws have given. */
-static void settle(Domain *d, Region *region, Group *group)
+static void settle(Domain *d, Region *region, Group *group, const Purpose *purpose)
 {
   domain_settle(d, region);
   TEAM_FOR (n, region->last_batch - region->first_batch) {
     const int64_t b = region->first_batch + n, first = d->batches[b].first * SLICE,
                   places = d->batches[b].last * SLICE - first;
     if (memchr(d->is_torn + first, 2, (size_t)places))
-      run_group(d, region, group, b, &(Purpose){.no_law = true}, false);
+      run_group(d, region, group, b, &(Purpose){.of = purpose->of, .no_law = true}, false);
   }
 }
 
@@ -260,7 +294,7 @@ static void settle(Domain *d, Region *region, Group *group)
 static void show_border(const Region *region, const Group *group, const Purpose *purpose)
 {
   TEAM_FOR (n, region->border_count) {
-    const Sweep sweep = {.first = region->border[n], .last = region->border[n] + 1, .at = purpose->at};
+    const Sweep sweep = sweep_of(purpose, region->border[n], region->border[n] + 1);
     for (int p = group->from; p < group->to; ++p)
       if (region->type->phases[p].writes == OF_SHOWN) run_phases(region, p, p + 1, &sweep, purpose);
   }
@@ -270,7 +304,7 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
 {
   const Phase *phases = region->type->phases;
   const int64_t from = region->first_batch, count = region->last_batch - from;
-  const bool asks = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  const bool asks = !is_linear(purpose) && !purpose->no_law && points_ask_ahead(&region->points);
   double *window = window_of_thread(&region->window);
   for (int p = 0; p < MOST_PHASES && phases[p].run;) {
     Group group = group_from(d, region, p, window);
@@ -279,8 +313,8 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
     for (int n = group.from; n < group.to; ++n) writes |= phases[n].writes & ~purpose->without;
     if (!writes) continue;
     if (phases[group.from].by_one) {
-      TEAM_SINGLE
-      phases[group.from].run(region->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
+      const Sweep whole = sweep_of(purpose, 0, d->particles->slices);
+      TEAM_SINGLE note_failure(d, from, phases[group.from].run(region->formulation, &whole));
       continue;
     }
     if (asks && group.law >= 0) { /* servers work while strains of further points are found */
@@ -298,7 +332,7 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
     Group before = group, after = {.from = group.close, .law = -1, .close = MOST_PHASES, .to = group.to, .ahead = -1};
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
-    const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;
+    const bool torn = group.law >= 0 && d->torn_count && !is_linear(purpose) && !region->type->bond_energy;
     const Later later = in_two ? find_later(d, from, count) : (Later){0};
     Later first = later, second = later;
     TEAM_FOR (n, count) {
@@ -306,9 +340,9 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
       run_group(d, region, &before, b, purpose, false);
       /* Where bonds have broken, forces wait for what families carry. */
       if (in_two && !torn && !closes_later(d, &first, n)) finish_batch(d, region, &after, b, purpose, writes);
-      if (!in_two && writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
+      if (!in_two && writes & OF_FORCES) sum_forces(d, purpose, b);
     }
-    if (torn) settle(d, region, &before);
+    if (torn) settle(d, region, &before, purpose);
     if (in_two) {
       TEAM_FOR (n, count)
         if (torn || closes_later(d, &second, n)) finish_batch(d, region, &after, from + n, purpose, writes);
@@ -319,13 +353,20 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
 static void run_all(Domain *d, const Purpose *purpose)
 {
   for (int r = 0; r < d->region_count; ++r) run_region(d, &d->regions[r], purpose);
-  if (d->region_count > 1 && !(purpose->without & OF_FORCES)) joint_resist(d, purpose->at);
+  if (d->region_count > 1 && !(purpose->without & OF_FORCES)) joint_resist(d, purpose->of);
 }
 
-void domain_forces(Domain *d)
+Evaluation domain_present(const Domain *d)
 {
-  run_all(d, &(Purpose){0});
-  forces_resist(&d->forces);
+  return (Evaluation){.displacement = d->particles->displacement, .internal = d->particles->internal};
+}
+
+void domain_forces(Domain *d, const Evaluation *of)
+{
+  TEAM_FOR (b, d->batch_count) d->batch_failed[b] = -1;
+  run_all(d, &(Purpose){.of = of});
+  if (of->linearised_at) return;
+  forces_resist(&d->forces, of->displacement, of->internal);
   TEAM_SINGLE
   {
     d->force_sum = 0;
@@ -339,43 +380,59 @@ void domain_forces(Domain *d)
   }
 }
 
+/** A sweep of all regions by the team. */
+typedef struct Task {
+  Domain *domain;
+  const Evaluation *of;
+  Purpose purpose;
+} Task;
+
 static void evaluate(void *context)
 {
-  domain_forces(context);
+  const Task *task = context;
+  domain_forces(task->domain, task->of);
 }
 
-void domain_evaluate(Domain *d)
+bool domain_has_forces(const Domain *d)
 {
-  team_run(evaluate, d);
+  return isfinite(d->force_sum) && d->failed_place < 0;
 }
 
-static void show_states(void *context)
+int domain_evaluate(Domain *d, const Evaluation *of)
 {
-  run_all(context, &(Purpose){.no_law = true, .without = OF_SUMS | OF_FORCES});
+  const Evaluation present = domain_present(d);
+  Task task = {.domain = d, .of = of ? of : &present};
+  team_run(evaluate, &task);
+  return task.of->linearised_at || domain_has_forces(d) ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
-void domain_show_states(Domain *d)
+static void sweep_all(void *context)
+{
+  const Task *task = context;
+  run_all(task->domain, &task->purpose);
+  if (!task->purpose.without) forces_resist(&task->domain->forces, task->of->displacement, task->of->internal);
+}
+
+/** Sweeps at displacements, into the particles' own forces. @param[in] displacement  NULL: those held */
+static void sweep_at(Domain *d, double *const *displacement, Purpose purpose)
+{
+  Evaluation at = domain_present(d);
+  if (displacement) at.displacement = displacement;
+  Task task = {.domain = d, .of = &at, .purpose = purpose};
+  task.purpose.of = &at;
+  team_run(sweep_all, &task);
+}
+
+void domain_show_states(Domain *d, double *const *displacement)
 {
   d->tensors_are_old |= d->leaves_tensors;
-  team_run(show_states, d);
-}
-
-static void find_tensors(void *context)
-{
-  run_all(context, &(Purpose){.observes = true, .without = OF_STATES | OF_SUMS | OF_FORCES});
+  sweep_at(d, displacement, (Purpose){.no_law = true, .without = OF_SUMS | OF_FORCES});
 }
 
 void domain_find_tensors(Domain *d)
 {
-  team_run(find_tensors, d);
+  sweep_at(d, NULL, (Purpose){.observes = true, .without = OF_STATES | OF_SUMS | OF_FORCES});
   d->tensors_are_old = false;
-}
-
-static void remake_forces(void *context)
-{
-  Domain *d = context;
-  run_all(d, &(Purpose){.no_law = true});
-  forces_resist(&d->forces);
 }
 
 void domain_follow(Domain *d)
@@ -384,11 +441,11 @@ void domain_follow(Domain *d)
   for (int r = 0; r < d->region_count; ++r)
     if (d->regions[r].type->commit) d->regions[r].type->commit(d->regions[r].formulation, false);
   if (domain_is_elastic(d))
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
   else if (domain_laws_in_forces(d))
-    domain_show_states(d);
+    domain_show_states(d, NULL);
   else
-    team_run(remake_forces, d);
+    sweep_at(d, NULL, (Purpose){.no_law = true});
 }
 
 /* ---- linearised steps ---- */
@@ -403,83 +460,55 @@ bool domain_take_secants(Domain *d, Secants of)
   return any;
 }
 
-int domain_linearise(Domain *d, Error *error)
+int domain_linearise(Domain *d, double *const *displacement, Error *error)
 {
+  const Evaluation at = {.displacement = displacement ? displacement : d->particles->displacement,
+                         .internal = d->particles->internal};
+  d->linearised_at = at.displacement;
   domain_leave_tensors(d, false);
   for (int r = 0; r < d->region_count; ++r)
     if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
-  domain_evaluate(d);
+  domain_evaluate(d, &at); /* callers ask domain_has_forces */
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     points_keep_tangents(&d->regions[r].points, false, error);
-    if (region->type->linearise(region->formulation, error)) return BRECCIA_FAILURE;
+    if (region->type->linearise(region->formulation, at.displacement, error)) return BRECCIA_FAILURE;
   }
   return BRECCIA_OK;
 }
 
-/** Puts other arrays in the place of displacements and internal forces, or takes them away again. */
-static void exchange(Particles *p, double *displacement[MOTIONS], double *internal[MOTIONS])
-{
-  for (int k = 0; k < p->motions; ++k) {
-    double *u = p->displacement[k], *f = p->internal[k];
-    p->displacement[k] = displacement[k];
-    p->internal[k] = internal[k];
-    displacement[k] = u;
-    internal[k] = f;
-  }
-}
-
-typedef struct Step {
-  Domain *domain;
-  double *displacement[MOTIONS], *internal[MOTIONS];
-} Step;
-
-static void take_step(void *context)
-{
-  Step *s = context;
-  run_all(s->domain, &(Purpose){.at = s->displacement});
-}
-
 void domain_linear_step(Domain *d, double *const *v, double *const *change)
 {
-  Step step = {.domain = d};
-  for (int k = 0; k < d->particles->motions; ++k) {
-    step.displacement[k] = v[k];
-    step.internal[k] = change[k];
-  }
-  exchange(d->particles, step.displacement, step.internal);
-  team_run(take_step, &step);
-  exchange(d->particles, step.displacement, step.internal);
+  domain_evaluate(d, &(Evaluation){.displacement = v, .linearised_at = d->linearised_at, .internal = change});
 }
+
+/** Displacements, or their changes, and the forces that follow from them. */
+typedef struct Rows {
+  Domain *domain;
+  double *const *displacement, *const *internal;
+} Rows;
 
 static void change_forces(void *context)
 {
-  const Step *s = context;
+  const Rows *s = context;
   forces_change(&s->domain->forces, s->displacement, s->internal);
 }
 
 void domain_change_forces(Domain *d, double *const v[3], double *const change[3])
 {
-  Step step = {d, {v[0], v[1], v[2]}, {change[0], change[1], change[2]}};
-  if (d->forces.count) team_run(change_forces, &step);
+  Rows rows = {d, v, change};
+  if (d->forces.count) team_run(change_forces, &rows);
 }
 
 static void resist(void *context)
 {
-  const Step *s = context;
-  forces_resist(&s->domain->forces);
+  const Rows *s = context;
+  forces_resist(&s->domain->forces, s->displacement, s->internal);
 }
 
-void domain_forces_beside(Domain *d, double *const forces[3])
+void domain_forces_beside(Domain *d, double *const *displacement, double *const forces[3])
 {
-  double *none[MOTIONS], *internal[MOTIONS];
-  Step step = {.domain = d};
-  for (int k = 0; k < d->particles->motions; ++k) {
-    none[k] = d->particles->displacement[k];
-    internal[k] = k < ROTATION ? forces[k] : d->particles->internal[k]; /* nothing beside bonds turns */
-  }
+  Rows rows = {d, displacement ? displacement : d->particles->displacement, forces};
   for (int k = 0; k < 3; ++k) memset(forces[k], 0, sizeof(double) * (size_t)d->particles->places);
-  exchange(d->particles, none, internal);
-  team_run(resist, &step);
-  exchange(d->particles, none, internal);
+  team_run(resist, &rows);
 }

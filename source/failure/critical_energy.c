@@ -112,7 +112,7 @@ static double half_energy(const Failure *failure, const Family *f, int64_t slice
 {
   const FailureRegion *own = &failure->regions[failure->region[slice]];
   double state[3], change[3], y[3], square = 0, sum = 0;
-  own->type->half_state(own->formulation, NULL, slice, slot, lane, state);
+  own->type->half_state(own->formulation, f->particles->displacement, NULL, slice, slot, lane, state);
   if (own->type->elongation) {
     own->type->elongation(own->formulation, slice, slot, lane, change);
   } else {

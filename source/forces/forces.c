@@ -111,10 +111,10 @@ void forces_find_again(Forces *f)
     if (f->type[k]->find_again) f->type[k]->find_again(f->own[k]);
 }
 
-void forces_resist(Forces *f)
+void forces_resist(Forces *f, double *const *displacement, double *const *internal)
 {
   for (int k = 0; k < f->count; ++k)
-    if (f->type[k]->resist) f->type[k]->resist(f->own[k]);
+    if (f->type[k]->resist) f->type[k]->resist(f->own[k], displacement, internal);
 }
 
 void forces_choose(Forces *f)

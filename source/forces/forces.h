@@ -54,8 +54,10 @@ typedef struct ForcesType {
   void (*undo)(void *forces);
   /** Displacements and bonds are others than they were. */
   void (*find_again)(void *forces);
-  /** Adds the forces per volume on particles, by all threads; trial state only. */
-  void (*resist)(void *forces);
+  /** Adds the forces per volume on particles to `internal`, by all threads; trial state only.
+   *  @param[in] displacement      [3] rows over places, and
+   *  @param[in,out] internal  [3] rows over places */
+  void (*resist)(void *forces, double *const *displacement, double *const *internal);
   /* For solvers that iterate, which have no place for kinds without `change`. */
   /** Chooses at the displacements held what the next evaluation would, so that a state can be noted. By one thread. */
   void (*choose)(void *forces);
@@ -127,7 +129,7 @@ void forces_bond_broke(Forces *forces, int32_t a, int32_t b);
 void forces_bond_mended(Forces *forces, int32_t a, int32_t b);
 void forces_undo(Forces *forces);
 void forces_find_again(Forces *forces);
-void forces_resist(Forces *forces);
+void forces_resist(Forces *forces, double *const *displacement, double *const *internal);
 void forces_choose(Forces *forces);
 double forces_room(const Forces *forces);
 void forces_linearise(Forces *forces);

@@ -150,17 +150,17 @@ static void *create(const FormulationParts *parts, Error *error)
 /* ---- single bonds and places ---- */
 
 /** Both ends give a bond half of its force. */
-static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                       double state[3])
+static void half_state(const void *formulation, double *const *u, double *const *at, int64_t slice, int64_t slot,
+                       int lane, double state[3])
 {
   const BondBased *b = formulation;
   const Bond bond = family_bond(b->family, slice, slot, lane);
   const double factor = bond_own_share(b, &bond) * bond.weight / b->particles->volume[bond.neighbour];
   double y[3];
   if (at) {
-    bond_change(b, at, slice, slot, lane, &bond, y);
+    bond_change(b, u, at, slice, slot, lane, &bond, y);
   } else {
-    const double pull = bond_pull(b, slice, slot, lane, &bond, y);
+    const double pull = bond_pull(b, u, slice, slot, lane, &bond, y);
     for (int k = 0; k < 3; ++k) y[k] *= pull;
   }
   for (int k = 0; k < 3; ++k) state[k] = factor * y[k];
@@ -174,7 +174,7 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const int64_t place = slice * SLICE + lane;
   const Bond bond = family_bond(b->family, slice, slot, lane);
   double y[3], square = 0, along = 0;
-  const double pull = bond_pull(b, slice, slot, lane, &bond, y) * bond.weight * p->volume[place];
+  const double pull = bond_pull(b, p->displacement, slice, slot, lane, &bond, y) * bond.weight * p->volume[place];
   for (int k = 0; k < 3; ++k) {
     square += y[k] * y[k];
     along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
@@ -220,7 +220,7 @@ static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const BondBased *b = formulation;
   ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
-  shape_gradient(b->family, (int32_t)place, shape.inverse, f);
+  shape_gradient(b->family, b->particles->displacement, (int32_t)place, shape.inverse, f);
   if (b->space == SPACE_PLANE_STRESS)
     f[8] = thickness_ratio(f, b->particles->free_strain ? b->particles->free_strain[place] : 0);
 }
@@ -237,7 +237,8 @@ static void stress(const void *formulation, int64_t place, double s[6])
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(f, slice, slot, lane);
-    double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y) * bond_own_share(b, &bond) * bond.weight;
+    double y[3], pull = bond_pull(b, b->particles->displacement, slice, slot, lane, &bond, y) *
+                        bond_own_share(b, &bond) * bond.weight;
     for (int k = 0; k < 6; ++k) s[k] += pull * y[symmetric_row[k]] * y[symmetric_column[k]];
   }
   if (b->space == SPACE_PLANE_STRAIN) s[ZZ] = (s[XX] + s[YY]) / 4;
@@ -248,11 +249,12 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
   const BondBased *b = formulation;
   const Particles *p = b->particles;
   const double *constant = b->bonds ? b->per_stress : b->stiffness;
-  for (int64_t place = sweep->first * SLICE; b->shown && !sweep->at && place < sweep->last * SLICE; ++place) {
+  for (int64_t place = sweep->first * SLICE; b->shown && !sweep->linearised_at && place < sweep->last * SLICE;
+       ++place) {
     double *shown = b->shown + BOND_SHOWN * place;
     for (int k = 0; k < 3; ++k) {
       shown[k] = p->position[k][place];
-      shown[4 + k] = p->displacement[k][place];
+      shown[4 + k] = sweep->displacement[k][place];
     }
     shown[3] = p->volume[place];
     shown[7] = constant[p->block[place / SLICE]] / 2;
@@ -269,12 +271,12 @@ static void renew(void *formulation, int64_t slice)
 static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
-  if (sweep->at)
+  if (sweep->linearised_at)
     bond_resist_changes(b, sweep);
   else if (b->bonds)
-    b->point_sweeps->resist(b, sweep->first, sweep->last);
+    b->point_sweeps->resist(b, sweep);
   else
-    b->resist_springs(b, sweep->first, sweep->last);
+    b->resist_springs(b, sweep);
   return -1;
 }
 

@@ -21,11 +21,11 @@ enum { LENGTH_PULL = 0, LENGTH_LIMIT = STRETCH_TERMS * QUAD };
 
 typedef struct BondBased BondBased;
 
-/** Forces on slices first .. last - 1 from linear bonds (bond_springs_sweep.c). */
-typedef void BondResist(const BondBased *b, int64_t first, int64_t last);
+/** Forces on the slices of a sweep from linear bonds (bond_springs_sweep.c). */
+typedef void BondResist(const BondBased *b, const Sweep *sweep);
 LANES_CHOICE(BondResist, bond_resist_springs)
 
-/** Over bonds with points: stretches of a batch of rows, and forces on slices first .. last - 1 from pulls (bond_points_sweep.c). */
+/** Over bonds with points: stretches of a batch of rows, and forces on the slices of a sweep from pulls (bond_points_sweep.c). */
 typedef struct BondPointSweeps {
   void (*stretch)(const BondBased *b, const Sweep *sweep);
   BondResist *resist;
@@ -107,18 +107,21 @@ double bond_elongation_of_pressure(Space space, const double strain[6], const do
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
 void bond_resist_changes(const BondBased *b, const Sweep *sweep);
-int bond_linearise(void *formulation, Error *error);
+int bond_linearise(void *formulation, double *const *displacement, Error *error);
 int64_t bond_point_count(const void *formulation);
-int bond_point(const void *formulation, int64_t number, Operator *point, Error *error);
+int bond_point(const void *formulation, double *const *displacement, int64_t number, Operator *point, Error *error);
 
 /** Tension of a bond and its slope, per weight: c s and c, or c / E times what laws answer to its stretch (bond_linear.c).
+ *  @param[in] u   rows of displacements
  *  @param[out] y  from the place to its neighbour, as deformed */
-void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3],
-                  double *tension, double *slope);
+void bond_tension(const BondBased *b, double *const *u, int64_t slice, int64_t slot, int lane, const Bond *bond,
+                  double y[3], double *tension, double *slope);
 
-/** Change of the force of a bond in a linearised step, per volume and weight. */
-void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
-                 double change[3]);
+/** Change of the force of a bond in a linearised step, per volume and weight.
+ *  @param[in] v   rows of the changes of displacements
+ *  @param[in] at  rows of the displacements at which the step is linearised */
+void bond_change(const BondBased *b, double *const *v, double *const *at, int64_t slice, int64_t slot, int lane,
+                 const Bond *bond, double change[3]);
 
 /** Returns the share of a bond that follows the material of its own SIMD block (material_share_of_bond); 0.5 if the
  *  other end belongs to another region. */
@@ -136,8 +139,10 @@ static inline double bond_own_share(const BondBased *b, const Bond *bond)
   return is_foreign(b->foreign, bond->neighbour) ? 1 : 0.5;
 }
 
-/** Tension over |y|, times the surface correction: force per volume, weight and length of y. */
-double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3]);
+/** Tension over |y|, times the surface correction: force per volume, weight and length of y.
+ *  @param[in] u  rows of displacements */
+double bond_pull(const BondBased *b, double *const *u, int64_t slice, int64_t slot, int lane, const Bond *bond,
+                 double y[3]);
 
 /** c by the continuum's integrals (docs/theory.md 2, table and general rule). */
 double bond_continuum_constant(const BondBased *b, double young);

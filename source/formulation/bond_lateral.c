@@ -49,11 +49,11 @@ int64_t bond_lateral_strains(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
   const Particles *p = b->particles;
-  if (!b->around || sweep->at) return -1;
+  if (!b->around || sweep->linearised_at) return -1;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; ++place) {
     if (p->number[place] < 0) continue;
     double f[9], *row = b->around + LATERAL_NUMBERS * place, *strain = row + LATERAL_STRAIN;
-    shape_gradient(b->family, (int32_t)place, row + LATERAL_INVERSE, f);
+    shape_gradient(b->family, sweep->displacement, (int32_t)place, row + LATERAL_INVERSE, f);
     const double freely = p->free_strain ? p->free_strain[place] : 0;
     for (int k = 0; k < 6; ++k) {
       const int i = symmetric_row[k], j = symmetric_column[k];

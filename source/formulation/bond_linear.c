@@ -14,8 +14,9 @@ typedef struct HalfSlot {
   Lanes eta[3], change[3]; /* elongations held, and their change */
 } HalfSlot;
 
-LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int half)
+LANES_INLINE HalfSlot half_slot(const BondBased *b, const Sweep *sweep, int64_t slice, int64_t slot, int half)
 {
+  double *const *at = sweep->linearised_at, *const *v = sweep->displacement;
   const Family *f = b->family;
   const int64_t here = slice * SLICE + LANES * half;
   HalfSlot h;
@@ -27,8 +28,7 @@ LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t
     for (int k = 0; k < 3; ++k) {
       h.xi[k] = lanes_set(row->xi[k]);
       h.eta[k] = lanes_load(at[k] + there) - lanes_load(at[k] + here);
-      h.change[k] =
-          lanes_load(b->particles->displacement[k] + there) - lanes_load(b->particles->displacement[k] + here);
+      h.change[k] = lanes_load(v[k] + there) - lanes_load(v[k] + here);
     }
     h.constant = lanes_set(b->stiffness[b->particles->block[slice]]);
     return h;
@@ -39,7 +39,7 @@ LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t
   for (int k = 0; k < 3; ++k) {
     h.xi[k] = lanes_gather(b->particles->position[k], there) - lanes_load(b->particles->position[k] + here);
     h.eta[k] = lanes_gather(at[k], there) - lanes_load(at[k] + here);
-    h.change[k] = lanes_gather(b->particles->displacement[k], there) - lanes_load(b->particles->displacement[k] + here);
+    h.change[k] = lanes_gather(v[k], there) - lanes_load(v[k] + here);
     square += h.xi[k] * h.xi[k];
   }
   /* Where there is no bond nothing is divided by 0. */
@@ -51,10 +51,10 @@ LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t
   return h;
 }
 
-LANES_INLINE void add_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int half,
+LANES_INLINE void add_change(const BondBased *b, const Sweep *sweep, int64_t slice, int64_t slot, int half,
                              Lanes force[3])
 {
-  const HalfSlot h = half_slot(b, at, slice, slot, half);
+  const HalfSlot h = half_slot(b, sweep, slice, slot, half);
   Lanes y[3], square = {0}, d = {0}, along = {0};
   for (int k = 0; k < 3; ++k) {
     y[k] = h.xi[k] + h.eta[k];
@@ -83,8 +83,8 @@ static void resist_changes(const BondBased *b, const Sweep *sweep)
     for (int half = 0; half < 2; ++half) {
       Lanes force[3] = {{0}};
       for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-        add_change(b, sweep->at, slice, slot, half, force);
-      for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[k]);
+        add_change(b, sweep, slice, slot, half, force);
+      for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + slice * SLICE + LANES * half, force[k]);
     }
 }
 
@@ -95,14 +95,14 @@ void bond_resist_changes(const BondBased *b, const Sweep *sweep)
 
 /* ---- bonds one by one ---- */
 
-void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3],
-                  double *tension, double *slope)
+void bond_tension(const BondBased *b, double *const *u, int64_t slice, int64_t slot, int lane, const Bond *bond,
+                  double y[3], double *tension, double *slope)
 {
   const int64_t place = slice * SLICE + lane, other = bond->neighbour / SLICE;
   const int32_t *block = b->particles->block;
   double d = 0;
   for (int k = 0; k < 3; ++k) {
-    const double eta = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][place];
+    const double eta = u[k][bond->neighbour] - u[k][place];
     y[k] = bond->xi[k] + eta;
     d += eta * (bond->xi[k] + y[k]);
   }
@@ -126,14 +126,14 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
   *slope = own * tangent[0] + there * tangent[1];
 }
 
-void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
-                 double change[3])
+void bond_change(const BondBased *b, double *const *v, double *const *at, int64_t slice, int64_t slot, int lane,
+                 const Bond *bond, double change[3])
 {
   const int64_t place = slice * SLICE + lane;
   double y[3], d = 0, square = 0, along = 0;
   for (int k = 0; k < 3; ++k) {
     const double eta = at[k][bond->neighbour] - at[k][place];
-    change[k] = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][place];
+    change[k] = v[k][bond->neighbour] - v[k][place];
     y[k] = bond->xi[k] + eta;
     d += eta * (bond->xi[k] + y[k]);
     square += y[k] * y[k];
@@ -154,9 +154,16 @@ void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t
   for (int k = 0; k < 3; ++k) change[k] = correction * (turned * y[k] + across * change[k]);
 }
 
+/** Bonds at the displacements at which they are linearised. */
+typedef struct BondsAt {
+  const BondBased *bonds;
+  double *const *displacement;
+} BondsAt;
+
 static void linearise_slice(void *context, int64_t slice)
 {
-  const BondBased *b = context;
+  const BondsAt *at = context;
+  const BondBased *b = at->bonds;
   const Family *f = b->family;
   for (int64_t row = b->bonds->first[slice]; row < b->bonds->first[slice + 1]; ++row) {
     int64_t slot;
@@ -164,18 +171,19 @@ static void linearise_slice(void *context, int64_t slice)
     double y[3];
     if (bond_list_bond(b->bonds, f, slice, row, &slot, &lane) || !(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
-    bond_tension(b, slice, slot, lane, &bond, y, &b->tension[row], &b->slope[row]);
+    bond_tension(b, at->displacement, slice, slot, lane, &bond, y, &b->tension[row], &b->slope[row]);
   }
 }
 
-int bond_linearise(void *formulation, Error *error)
+int bond_linearise(void *formulation, double *const *displacement, Error *error)
 {
   BondBased *b = formulation;
   if (!b->bonds) return BRECCIA_OK;
   if (!b->tension) b->tension = places_array(b->bonds->count, "linearised step", error);
   if (!b->slope) b->slope = places_array(b->bonds->count, "linearised step", error);
   if (!b->tension || !b->slope) return BRECCIA_FAILURE;
-  team_each(b->particles->slices, linearise_slice, b);
+  BondsAt at = {b, displacement};
+  team_each(b->particles->slices, linearise_slice, &at);
   return BRECCIA_OK;
 }
 
@@ -186,7 +194,7 @@ int64_t bond_point_count(const void *formulation)
 }
 
 /** Points are numbered by slot and lane; a bond has one, of its end with the lower place. */
-int bond_point(const void *formulation, int64_t number, Operator *point, Error *error)
+int bond_point(const void *formulation, double *const *u, int64_t number, Operator *point, Error *error)
 {
   const BondBased *b = formulation;
   const int64_t slot = number / SLICE, slice = family_slice(b->family, slot);
@@ -201,7 +209,7 @@ int bond_point(const void *formulation, int64_t number, Operator *point, Error *
   OperatorPlace *p = operator_add(point, bond.neighbour, error);
   if (!p) return BRECCIA_FAILURE;
   double y[3], length = 0;
-  bond_tension(b, slice, slot, lane, &bond, y, &point->stress[0], &point->tangent[0]);
+  bond_tension(b, u, slice, slot, lane, &bond, y, &point->stress[0], &point->tangent[0]);
   for (int k = 0; k < 3; ++k) length += y[k] * y[k];
   length = sqrt(length);
   for (int k = 0; k < 3; ++k) p->g[k] = y[k] / (length * bond.length);

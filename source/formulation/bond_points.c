@@ -29,10 +29,11 @@ int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep)
   return -1;
 }
 
-double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3])
+double bond_pull(const BondBased *b, double *const *u, int64_t slice, int64_t slot, int lane, const Bond *bond,
+                 double y[3])
 {
   double tension, slope, length = 0;
-  bond_tension(b, slice, slot, lane, bond, y, &tension, &slope);
+  bond_tension(b, u, slice, slot, lane, bond, y, &tension, &slope);
   for (int k = 0; k < 3; ++k) length += y[k] * y[k];
   if (b->surface) tension *= (double)b->surface[slot * SLICE + lane];
   return tension / sqrt(length);

@@ -11,7 +11,7 @@ typedef struct Chunk {
   int64_t slice, row;
   int count;
   double *strain, *lever; /* [count]; lever: pull per stress */
-  const double *u[3];
+  double *const *u;       /* rows of displacements */
   double per_stress;
 } Chunk;
 
@@ -112,7 +112,7 @@ LANES_INLINE void stretch_slots(const BondBased *b, const Chunk *chunk, int32_t 
   StretchHere here[HALVES] = {0};
   StretchWalk walk[HALVES] = {0};
   for (int half = 0; half < HALVES; ++half) {
-    here[half] = stretch_here(b->particles, chunk->slice, half);
+    here[half] = stretch_here(b->particles, chunk->u, chunk->slice, half);
     walk[half] = stretch_walk(f, b->shown, first, f->first[chunk->slice + 1], half);
   }
   unsigned rest = (unsigned)UINT8_MAX << (code % SLICE); /* a chunk may begin and end within a slot */
@@ -186,14 +186,13 @@ LANES_INLINE bool stretch_rows(const BondBased *b, const Chunk *chunk, bool gaps
 static void stretch_chunk(const BondBased *b, const Sweep *sweep)
 {
   const BondBased local = *b; /* so that stores are seen not to change it */
-  const Particles *p = b->particles;
   const Chunk chunk = {.slice = sweep->first,
                        .row = sweep->row,
                        .count = sweep->rows,
                        .strain = sweep->strain[0],
                        .lever = sweep->carry,
-                       .u = {p->displacement[0], p->displacement[1], p->displacement[2]},
-                       .per_stress = b->per_stress[p->block[sweep->first]]};
+                       .u = sweep->displacement,
+                       .per_stress = b->per_stress[b->particles->block[sweep->first]]};
   const bool small =
       local.gaps[chunk.slice] ? stretch_rows(&local, &chunk, true, true) : stretch_rows(&local, &chunk, false, true);
   if (!small) stretch_rows(&local, &chunk, true, false);
@@ -230,33 +229,33 @@ LANES_INLINE void resist_stored(const BondBased *b, int64_t slot, int half, cons
   for (int k = 0; k < 3; ++k) force[k] += pull * ((there.x[k] - here->x[k]) + (there.u[k] - here->u[k]));
 }
 
-LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
+LANES_INLINE void resist_slice(const BondBased *b, const Sweep *sweep, int64_t slice, bool gaps)
 {
   const Family *f = b->family;
   const int64_t stored = f->stored[slice], last = f->first[slice + 1];
-  double *const *all = b->particles->displacement;
+  double *const *all = sweep->displacement;
   const double *const u[3] = {all[0], all[1], all[2]};
   Lanes force[HALVES][3] = {{{0}}}, own[HALVES][3];
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + slice * SLICE + LANES * half);
   for (int64_t slot = f->first[slice]; slot < stored; ++slot) resist_lattice(b, u, slice, slot, gaps, force, own);
   for (int half = 0; half < HALVES; ++half) {
-    const StretchHere here = stretch_here(b->particles, slice, half);
+    const StretchHere here = stretch_here(b->particles, all, slice, half);
     StretchWalk walk = stretch_walk(f, b->shown, stored, last, half);
     for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slot, half, &here, &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
-    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
+    for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
-static void resist_points(const BondBased *b, int64_t first, int64_t last)
+static void resist_points(const BondBased *b, const Sweep *sweep)
 {
   const BondBased local = *b; /* so that stores are seen not to change it */
-  for (int64_t slice = first; slice < last; ++slice)
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
     if (local.gaps[slice])
-      resist_slice(&local, slice, true);
+      resist_slice(&local, sweep, slice, true);
     else
-      resist_slice(&local, slice, false);
+      resist_slice(&local, sweep, slice, false);
 }
 
 const BondPointSweeps LANES_NAMED(bond_point_sweeps) = {.stretch = stretch_chunk, .resist = resist_points};

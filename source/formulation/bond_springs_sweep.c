@@ -12,8 +12,8 @@ typedef struct Sum {
 } Sum;
 
 /** Half a slot between lattice neighbours; back is -eta, and middle 2 xi + eta. Polynomial by pairs: its chain is shorter so. */
-LANES_INLINE void add_lattice(const BondBased *b, int64_t slice, int64_t slot, int half, bool gaps, bool corrected,
-                              StretchRange range, Sum *sum)
+LANES_INLINE void add_lattice(const BondBased *b, double *const *u, int64_t slice, int64_t slot, int half, bool gaps,
+                              bool corrected, StretchRange range, Sum *sum)
 {
   const Family *f = b->family;
   const int pattern = family_pattern(f, slice, slot);
@@ -22,7 +22,7 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slice, int64_t slot, i
   const int64_t there = family_base(f, slice, slot) + LANES * half;
   Lanes d = {0}, twice[3], pull;
   for (int k = 0; k < 3; ++k) {
-    Lanes back = sum->own[k] - lanes_load(b->particles->displacement[k] + there);
+    Lanes back = sum->own[k] - lanes_load(u[k] + there);
     Lanes middle = lanes_repeated(numbers + row->xi[k]) - back;
     twice[k] = middle - back; /* 2 y */
     d += back * middle;
@@ -58,50 +58,53 @@ LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int half, bool ga
 }
 
 /** Forces on a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)
+LANES_INLINE StretchRange resist_slice(const BondBased *b, const Sweep *sweep, int64_t slice, bool gaps, bool corrected,
+                                       StretchRange range)
 {
   const Family *f = b->family;
   const Particles *p = b->particles;
+  double *const *u = sweep->displacement;
   const int64_t stored = f->stored[slice], last = f->first[slice + 1];
   const Lanes scale = lanes_set(b->stiffness[p->block[slice]]);
   double most = 0;
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
     Sum sum = {.within = lanes_all_within()};
-    for (int k = 0; k < 3; ++k) sum.own[k] = lanes_load(p->displacement[k] + here);
+    for (int k = 0; k < 3; ++k) sum.own[k] = lanes_load(u[k] + here);
     for (int64_t slot = f->first[slice]; slot < stored; ++slot)
-      add_lattice(b, slice, slot, half, gaps, corrected, range, &sum);
+      add_lattice(b, u, slice, slot, half, gaps, corrected, range, &sum);
     for (int k = 0; k < 3; ++k) sum.force[k] *= scale;
-    const StretchHere own = stretch_here(p, slice, half);
+    const StretchHere own = stretch_here(p, u, slice, half);
     const Lanes constant = lanes_set(stored < last ? b->shown[BOND_SHOWN * slice * SLICE + 7] : 0);
     StretchWalk walk = stretch_walk(f, b->shown, stored, last, half);
     for (int64_t slot = stored; slot < last; ++slot)
       add_stored(b, slot, half, gaps, corrected, constant, &own, range, &walk, &sum);
-    for (int k = 0; k < 3; ++k) lanes_store(p->internal[k] + here, sum.force[k]);
+    for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + here, sum.force[k]);
     if (!lanes_are_within(sum.within)) most = INFINITY;
     for (int k = 0; k < LANES; ++k) most = sum.largest[k] > most ? sum.largest[k] : most;
   }
   return stretch_range_after(range, most);
 }
 
-LANES_INLINE StretchRange resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)
+LANES_INLINE StretchRange resist_way(const BondBased *b, const Sweep *sweep, int64_t slice, bool gaps, bool corrected,
+                                     StretchRange range)
 {
-  if (range == RANGE_SERIES) return resist_slice(b, slice, gaps, corrected, RANGE_SERIES);
-  if (range == RANGE_NEWTON) return resist_slice(b, slice, gaps, corrected, RANGE_NEWTON);
-  return resist_slice(b, slice, gaps, corrected, RANGE_ANY);
+  if (range == RANGE_SERIES) return resist_slice(b, sweep, slice, gaps, corrected, RANGE_SERIES);
+  if (range == RANGE_NEWTON) return resist_slice(b, sweep, slice, gaps, corrected, RANGE_NEWTON);
+  return resist_slice(b, sweep, slice, gaps, corrected, RANGE_ANY);
 }
 
-void LANES_NAMED(bond_resist_springs)(const BondBased *b, int64_t first, int64_t last)
+void LANES_NAMED(bond_resist_springs)(const BondBased *b, const Sweep *sweep)
 {
   const BondBased local = *b; /* so that stores are seen not to change it */
-  for (int64_t slice = first; slice < last; ++slice) {
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     /* Begins with the way of the last time, and ends with the first way that is good: what came before does not show in the bits. */
     StretchRange range = (StretchRange)local.range[slice], next = range;
     for (int turn = 0; turn < 3; ++turn) {
       range = next;
-      next = local.surface       ? resist_way(&local, slice, true, true, range)
-             : local.gaps[slice] ? resist_way(&local, slice, true, false, range)
-                                 : resist_way(&local, slice, false, false, range);
+      next = local.surface       ? resist_way(&local, sweep, slice, true, true, range)
+             : local.gaps[slice] ? resist_way(&local, sweep, slice, true, false, range)
+                                 : resist_way(&local, sweep, slice, false, false, range);
       if (next == range) break;
     }
     local.range[slice] = (uint8_t)range;

@@ -15,7 +15,7 @@ static int64_t deform(void *formulation, const Sweep *sweep)
 static int64_t respond(void *formulation, const Sweep *sweep)
 {
   const Correspondence *c = formulation;
-  if (c->fading && !sweep->at && !sweep->no_law) correspondence_fade(c, sweep);
+  if (c->fading && !sweep->linearised_at && !sweep->no_law) correspondence_fade(c, sweep);
   return c->sweeps->respond(c, sweep);
 }
 

@@ -125,12 +125,15 @@ FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */
 int64_t correspondence_finish(void *formulation, const Sweep *sweep);
-void correspondence_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                               double state[3]);
+void correspondence_half_state(const void *formulation, double *const *displacement, double *const *linearised_at,
+                               int64_t slice, int64_t slot, int lane, double state[3]);
 void correspondence_even_stress(const void *formulation, const uint8_t *marked, double *const area[3]);
 int64_t correspondence_point_count(const void *formulation);
-int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
-int correspondence_linearise(void *formulation, Error *error);
+int correspondence_point(const void *formulation, double *const *displacement, int64_t place, Operator *point,
+                         Error *error);
+/** Gradient I + G of a family at displacements. */
+void correspondence_gradient_at(const Correspondence *c, double *const *displacement, int64_t place, double f[9]);
+int correspondence_linearise(void *formulation, double *const *displacement, Error *error);
 
 /* How C fades as points soften (correspondence_fading.c). Fade: in a step, before forces: C by the factors committed, and what factors its strains and
  * stresses leave. */

@@ -29,9 +29,9 @@ void correspondence_axial_spring(const Correspondence *c, double *const u[3], in
 
 /** Its force, less the control that the sweeps have added for this particle.
  *  @param[in] at  NULL, or the displacements at which changes of forces are wanted */
-static void axial_state(const Correspondence *c, double *const *at, int64_t place, const Bond *bond, double t[3])
+static void axial_state(const Correspondence *c, double *const *u, double *const *at, int64_t place, const Bond *bond,
+                        double t[3])
 {
-  double *const *u = c->particles->displacement;
   const double omega = bond->weight / c->particles->volume[bond->neighbour];
   double pull[3], spring[6], eta[3];
   correspondence_axial_spring(c, at ? at : u, place, bond, pull, spring);
@@ -57,19 +57,19 @@ int64_t correspondence_finish(void *formulation, const Sweep *sweep)
       if (!(c->family->intact[slot] >> lane & 1)) continue;
       Bond bond = family_bond(c->family, slice, slot, lane);
       double t[3];
-      axial_state(c, sweep->at, place, &bond, t);
+      axial_state(c, sweep->displacement, sweep->linearised_at, place, &bond, t);
       for (int k = 0; k < 3; ++k) {
-        c->particles->internal[k][place] += t[k] * c->particles->volume[bond.neighbour];
+        sweep->internal[k][place] += t[k] * c->particles->volume[bond.neighbour];
         if (!is_foreign(c->foreign, bond.neighbour))
-          c->particles->internal[k][bond.neighbour] -= t[k] * c->particles->volume[place];
+          sweep->internal[k][bond.neighbour] -= t[k] * c->particles->volume[place];
       }
     }
   }
   return -1;
 }
 
-void correspondence_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                               double state[3])
+void correspondence_half_state(const void *formulation, double *const *u, double *const *at, int64_t slice,
+                               int64_t slot, int lane, double state[3])
 {
   const Correspondence *c = formulation;
   const Bond bond = family_bond(c->family, slice, slot, lane);
@@ -78,14 +78,14 @@ void correspondence_half_state(const void *formulation, double *const *at, int64
   for (int k = 0; k < 3; ++k) {
     state[k] = 0;
     for (int j = 0; j < 3; ++j) {
-      const double eta = c->particles->displacement[j][bond.neighbour] - c->particles->displacement[j][place];
+      const double eta = u[j][bond.neighbour] - u[j][place];
       state[k] += omega * (c->state[3 * k + j][place] * bond.xi[j] +
                            hold_component(c, place, symmetric_place[3 * k + j]) * eta);
     }
   }
   if (c->shapes.mode[place] != SHAPE_AXIAL) return;
   double t[3];
-  axial_state(c, at, place, &bond, t);
+  axial_state(c, u, at, place, &bond, t);
   for (int k = 0; k < 3; ++k) state[k] += t[k];
 }
 

@@ -141,7 +141,7 @@ static bool any_axial_beyond(const Correspondence *c, int64_t slice, int lane, c
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
     double state[3], change[3], energy = 0;
-    correspondence_half_state(c, NULL, slice, slot, lane, state);
+    correspondence_half_state(c, c->particles->displacement, NULL, slice, slot, lane, state);
     correspondence_elongation(c, slice, slot, lane, change);
     for (int k = 0; k < 3; ++k) energy += 0.5 * state[k] * change[k];
     const double influence = limit->of->value(fmin(1, bond.length / f->horizon), bond.length),

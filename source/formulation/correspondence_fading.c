@@ -168,12 +168,11 @@ LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, co
 }
 
 /** What the control of four places would store per volume if nothing of it had faded. @param[in] g  [9][BATCH] G */
-LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const double *g)
+LANES_INLINE Lanes stored_whole(const Correspondence *c, double *const *u, int64_t place, const double *g)
 {
   const Family *f = c->family;
   const int64_t slice = place / SLICE;
   const int half = (int)(place % SLICE / LANES);
-  double *const *u = c->particles->displacement;
   Lanes own[3], gradient[9], whole[6], sum = {0};
   for (int k = 0; k < 3; ++k) own[k] = lanes_load(u[k] + place);
   for (int k = 0; k < 9; ++k) gradient[k] = lanes_load(g + k * BATCH);
@@ -251,7 +250,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
       }
       const bool cracked = softens && f->mark[slice] & (SOFTENED | BESIDE), flows = may && yields && !softens;
       if (cracked || flows) {
-        const Lanes stored = stored_whole(c, place, sweep->carry + here);
+        const Lanes stored = stored_whole(c, sweep->displacement, place, sweep->carry + here);
         const Lanes resisting = flows ? lanes_least(left, resisting_share(m, sweep, here, stored)) : left;
         left = lanes_choose(left < one, resisting, left);
         if (cracked) left *= lanes_choose(stored > most, most / stored, one);

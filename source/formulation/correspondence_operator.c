@@ -12,19 +12,21 @@ int64_t correspondence_point_count(const void *formulation)
 }
 
 /** Springs of a particle that has no strain. */
-static int add_axial(const Correspondence *c, int64_t place, const Bond *bond, Operator *point, Error *error)
+static int add_axial(const Correspondence *c, double *const *u, int64_t place, const Bond *bond, Operator *point,
+                     Error *error)
 {
   OperatorPlace *p = operator_add(point, bond->neighbour, error);
   if (!p) return BRECCIA_FAILURE;
   const double volumes = c->particles->volume[place] * c->particles->volume[bond->neighbour];
-  correspondence_axial_spring(c, c->particles->displacement, place, bond, p->pull, p->spring);
+  correspondence_axial_spring(c, u, place, bond, p->pull, p->spring);
   for (int k = 0; k < 3; ++k) p->pull[k] *= volumes;
   for (int k = 0; k < 6; ++k) p->spring[k] *= volumes;
   return BRECCIA_OK;
 }
 
 /** A neighbour of a particle with a strain: g = w K^-1 xi, and the spring C of the control. */
-static int add_neighbour(const Correspondence *c, int64_t place, const Bond *bond, Operator *point, Error *error)
+static int add_neighbour(const Correspondence *c, double *const *u, int64_t place, const Bond *bond, Operator *point,
+                         Error *error)
 {
   OperatorPlace *p = operator_add(point, bond->neighbour, error);
   if (!p) return BRECCIA_FAILURE;
@@ -32,7 +34,7 @@ static int add_neighbour(const Correspondence *c, int64_t place, const Bond *bon
   const double volume = c->particles->volume[place];
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < 3; ++j) {
-      const double eta = c->particles->displacement[j][bond->neighbour] - c->particles->displacement[j][place];
+      const double eta = u[j][bond->neighbour] - u[j][place];
       p->g[k] += bond->weight * shape->inverse[symmetric_place[3 * k + j]][place % SLICE] * bond->xi[j];
       p->pull[k] += volume * bond->weight * point->hold[symmetric_place[3 * k + j]] * eta;
     }
@@ -43,7 +45,7 @@ static int add_neighbour(const Correspondence *c, int64_t place, const Bond *bon
   return BRECCIA_OK;
 }
 
-int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error)
+int correspondence_point(const void *formulation, double *const *u, int64_t place, Operator *point, Error *error)
 {
   const Correspondence *c = formulation;
   const Family *f = c->family;
@@ -67,27 +69,35 @@ int correspondence_point(const void *formulation, int64_t place, Operator *point
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
-    if ((axial ? add_axial : add_neighbour)(c, place, &bond, point, error)) return BRECCIA_FAILURE;
+    if ((axial ? add_axial : add_neighbour)(c, u, place, &bond, point, error)) return BRECCIA_FAILURE;
   }
   operator_close(point);
   return BRECCIA_OK;
 }
 
+/** Families at the displacements at which they are linearised. */
+typedef struct FamiliesAt {
+  const Correspondence *families;
+  double *const *displacement;
+} FamiliesAt;
+
 static void keep_gradients(void *context, int64_t slice)
 {
-  const Correspondence *c = context;
+  const FamiliesAt *at = context;
+  const Correspondence *c = at->families;
   for (int lane = 0; lane < SLICE; ++lane) {
     double f[9];
-    correspondence_gradient(c, slice * SLICE + lane, f);
+    correspondence_gradient_at(c, at->displacement, slice * SLICE + lane, f);
     for (int k = 0; k < 9; ++k) c->gradients[slice * (9 * SLICE) + k * SLICE + lane] = f[k] - (k % 4 == 0);
   }
 }
 
-int correspondence_linearise(void *formulation, Error *error)
+int correspondence_linearise(void *formulation, double *const *displacement, Error *error)
 {
   Correspondence *c = formulation;
   if (!c->gradients && !(c->gradients = places_array(9 * c->particles->places, "linearised step", error)))
     return BRECCIA_FAILURE;
-  if (c->finite) team_each(c->particles->slices, keep_gradients, c);
+  FamiliesAt at = {c, displacement};
+  if (c->finite) team_each(c->particles->slices, keep_gradients, &at);
   return BRECCIA_OK;
 }

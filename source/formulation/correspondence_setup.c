@@ -276,12 +276,17 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   return c;
 }
 
+void correspondence_gradient_at(const Correspondence *c, double *const *displacement, int64_t place, double f[9])
+{
+  double inverse[6];
+  for (int k = 0; k < 6; ++k) inverse[k] = shape_of_slice(&c->shapes, place / SLICE)->inverse[k][place % SLICE];
+  shape_gradient(c->family, displacement, (int32_t)place, inverse, f);
+}
+
 void correspondence_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Correspondence *c = formulation;
-  double inverse[6];
-  for (int k = 0; k < 6; ++k) inverse[k] = shape_of_slice(&c->shapes, place / SLICE)->inverse[k][place % SLICE];
-  shape_gradient(c->family, (int32_t)place, inverse, f);
+  correspondence_gradient_at(c, c->particles->displacement, place, f);
 }
 
 bool correspondence_takes_small_strain(const void *formulation)

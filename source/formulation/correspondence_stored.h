@@ -7,14 +7,14 @@
 #include "formulation/correspondence.h"
 
 /** Position, and displacement and volume as sums read them, of the places of some slices. */
-static inline void correspondence_show_places(const Correspondence *c, int64_t first, int64_t last)
+static inline void correspondence_show_places(const Correspondence *c, double *const *u, int64_t first, int64_t last)
 {
   const Particles *p = c->particles;
   for (int64_t place = first * SLICE; place < last * SLICE; ++place) {
     double *shown = c->shown + CORRESPONDENCE_SHOWN * place;
     for (int k = 0; k < 3; ++k) {
       shown[k] = p->position[k][place];
-      shown[4 + k] = p->volume[place] * p->displacement[k][place];
+      shown[4 + k] = p->volume[place] * u[k][place];
     }
     shown[7] = p->volume[place];
   }

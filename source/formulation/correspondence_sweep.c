@@ -19,13 +19,14 @@ LANES_INLINE int64_t step_over_row(const Family *f, int64_t slice, int64_t slot,
 
 /** Slots of no whole row, on the lattice. Component by component: four sums for each half of a slice, and what they are made
  *  from, fit into 16 registers. */
-LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool gaps, Lanes sums[3][HALVES][4])
+LANES_INLINE void deform_lattice(const Correspondence *c, double *const *displacement, int64_t slice, bool gaps,
+                                 Lanes sums[3][HALVES][4])
 {
   const Family *f = c->family;
   bool ragged = gaps && f->rows.condition[slice] & ROWS_RAGGED;
   int64_t last = ragged ? f->stored[slice] : f->rows.first[slice];
   for (int k = 0; k < 3; ++k) {
-    const double *u = c->particles->displacement[k];
+    const double *u = displacement[k];
     const uint16_t *whole = f->rows.whole + f->rows.begin[slice], *end = whole + f->rows.count[slice];
     Lanes sum[HALVES][4] = {{{0}}};
     for (int64_t slot = f->first[slice]; slot < last; ++slot) {
@@ -108,14 +109,13 @@ static int64_t show_displacements(const Correspondence *correspondence, const Sw
   const Correspondence local = in_window(correspondence, sweep, 6), *c = &local;
   const int64_t first = sweep->first, last = sweep->last;
   const LatticeRows *rows = &c->family->rows;
-  if (c->shown) correspondence_show_places(c, first, last);
+  if (c->shown) correspondence_show_places(c, sweep->displacement, first, last);
   for (int64_t slice = first; slice < last; ++slice)
     for (int kind = 0; kind < rows->kinds; ++kind) {
       const RowKind *row = &rows->kind[c->particles->block[slice] * ROW_KINDS + kind];
       double *out = c->row_displacement[kind] + (slice * SLICE & c->round) * 6;
       for (int k = 0; k < 3; ++k)
-        lattice_row_sums(rows, row, slice, c->particles->displacement[k], out + (2 * k + 1) * SLICE,
-                         out + 2 * k * SLICE);
+        lattice_row_sums(rows, row, slice, sweep->displacement[k], out + (2 * k + 1) * SLICE, out + 2 * k * SLICE);
     }
   return -1;
 }
@@ -237,9 +237,9 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Swe
   Lanes sums[3][HALVES][4] = {{{{0}}}};
   deform_rows(c, slice, sums);
   if (f->rows.condition[slice] & ROWS_GAPS)
-    deform_lattice(c, slice, true, sums);
+    deform_lattice(c, sweep->displacement, slice, true, sums);
   else
-    deform_lattice(c, slice, false, sums);
+    deform_lattice(c, sweep->displacement, slice, false, sums);
   if (f->stored[slice] < f->first[slice + 1]) {
     if (f->scale)
       correspondence_deform_stored(c, slice, true, sums);
@@ -251,7 +251,7 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Swe
     int64_t place = slice * SLICE + lane;
     Lanes moved[3][4];
     for (int k = 0; k < 3; ++k) {
-      Lanes u = lanes_load(c->particles->displacement[k] + place);
+      Lanes u = lanes_load(sweep->displacement[k] + place);
       for (int j = 0; j < 3; ++j) moved[k][j] = sums[k][half][j] - u * lanes_load(shape->first_moment[j] + lane);
       lanes_store(c->relative[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + lane));
     }
@@ -266,7 +266,7 @@ static int64_t deform(const Correspondence *correspondence, const Sweep *sweep)
                        *c = &local; /* so that stores are seen not to change it */
   const Sweep own = *sweep;
   for (int64_t slice = own.first; slice < own.last; ++slice)
-    if (own.at)
+    if (own.linearised_at)
       deform_slice(c, slice, &own, true);
     else
       deform_slice(c, slice, &own, false);
@@ -315,7 +315,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, const Sweep *sweep, int
     }
   if (!hold_is_read(c->control)) return;
   Lanes u[3];
-  for (int k = 0; k < 3; ++k) u[k] = lanes_load(c->particles->displacement[k] + place);
+  for (int k = 0; k < 3; ++k) u[k] = lanes_load(sweep->displacement[k] + place);
   for (int r = 0; r < 3; ++r) {
     Lanes held = hold[0] * u[r];
     if (c->control == CONTROL_TENSOR)
@@ -328,7 +328,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, const Sweep *sweep, int
 static int64_t respond(const Correspondence *c, const Sweep *sweep)
 {
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES)
-    if (sweep->at)
+    if (sweep->linearised_at)
       respond_lanes(c, sweep, place, true);
     else
       respond_lanes(c, sweep, place, false);
@@ -337,7 +337,7 @@ static int64_t respond(const Correspondence *c, const Sweep *sweep)
   return -1;
 }
 
-LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control control)
+LANES_INLINE void resist_slice(const Correspondence *c, const Sweep *sweep, int64_t slice, Control control)
 {
   const Family *f = c->family;
   const SliceShape *shape = shape_of_slice(&c->shapes, slice);
@@ -358,7 +358,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
     int64_t place = slice * SLICE + LANES * half;
     Lanes u[3], relative[3];
     for (int k = 0; k < 3; ++k) {
-      u[k] = lanes_load(c->particles->displacement[k] + place);
+      u[k] = lanes_load(sweep->displacement[k] + place);
       relative[k] = lanes_load(c->relative[k] + place);
     }
     for (int r = 0; r < 3; ++r) {
@@ -371,7 +371,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
         int k = symmetric_place[3 * r + j];
         sum += lanes_load(c->hold[k] + place) * relative[j] - hold[half][k] * u[j];
       }
-      lanes_store(c->particles->internal[r] + place, lanes_intact(lanes, half, sum));
+      lanes_store(sweep->internal[r] + place, lanes_intact(lanes, half, sum));
     }
   }
 }
@@ -383,13 +383,13 @@ static int64_t resist(const Correspondence *correspondence, const Sweep *sweep)
   const int64_t last = sweep->last;
   for (int64_t slice = sweep->first; slice < last; ++slice)
     if (c->control == CONTROL_UNIFORM)
-      resist_slice(c, slice, CONTROL_UNIFORM);
+      resist_slice(c, sweep, slice, CONTROL_UNIFORM);
     else if (c->control == CONTROL_SCALAR)
-      resist_slice(c, slice, CONTROL_SCALAR);
+      resist_slice(c, sweep, slice, CONTROL_SCALAR);
     else if (c->control == CONTROL_NONE)
-      resist_slice(c, slice, CONTROL_NONE);
+      resist_slice(c, sweep, slice, CONTROL_NONE);
     else
-      resist_slice(c, slice, CONTROL_TENSOR);
+      resist_slice(c, sweep, slice, CONTROL_TENSOR);
   return -1;
 }
 

@@ -128,9 +128,10 @@ typedef struct Sweep {
   int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
   int rows;
   bool no_law; /* stresses are as they should be: laws of a formulation that keeps no points are not asked either */
-  /** NULL: forces of the displacements held. Otherwise a linearised step: changes of forces with changes v of displacements, which
-   *  stand in their place, and these are the displacements at which it was linearised. */
-  double *const *at;
+  double *const *displacement; /* [motions] rows of displacements; of a linearised step, their changes v */
+  /** [motions] rows of displacements at which the step is linearised; NULL: the evaluation is nonlinear. */
+  double *const *linearised_at;
+  double *const *internal; /* [motions] rows of forces and moments per volume, or their changes, that phases write */
   /** Where phases `ahead` write what later ones read, of slice s where s modulo `window_slices` says; NULL: in the formulation's own arrays. */
   double *window;
   int64_t window_slices; /* a power of two */
@@ -187,18 +188,20 @@ struct FormulationType {
   void (*renew)(void *formulation, int64_t slice);
   /** From displacements to internal forces per volume, batch by batch, in this order; up to the first without `run`. */
   Phase phases[MOST_PHASES];
-  /** Keeps what a linearised step needs of the state that was evaluated last, tangents of the points among it. */
-  int (*linearise)(void *formulation, Error *error);
+  /** Keeps what a linearised step needs of the state that was evaluated last, tangents of the points among it.
+   *  @param[in] displacement  [motions] rows of displacements of that state */
+  int (*linearise)(void *formulation, double *const *displacement, Error *error);
   /** Force per volume squared t that a particle's own formulation gives one of its bonds: the force on it per volume is the sum of
    *  (t_ij - t_ji) V_j. Of the state that was evaluated last; in a linearised step its change.
-   *  @param[in] at  as in Sweep */
-  void (*half_state)(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                     double state[3]);
+   *  @param[in] displacement, linearised_at  as in Sweep */
+  void (*half_state)(const void *formulation, double *const *displacement, double *const *linearised_at, int64_t slice,
+                     int64_t slot, int lane, double state[3]);
   /** Material points, numbered for `point`: some of the numbers may have none. */
   int64_t (*point_count)(const void *formulation);
   /** How displacements make the strain of a point and its stress forces, and what springs beside it do. Slow and plain: what sweeps are
-   *  checked against, and what matrices are assembled from. Of the state that was evaluated last; its tangent, if that was linearised. */
-  int (*point)(const void *formulation, int64_t number, Operator *point, Error *error);
+   *  checked against, and what matrices are assembled from. Of the state that was evaluated last; its tangent, if that was linearised.
+   *  @param[in] displacement  [motions] rows of displacements of that state */
+  int (*point)(const void *formulation, double *const *displacement, int64_t number, Operator *point, Error *error);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
   /** Returns true if laws take small strain, so that what is told of places must be such. NULL: laws take what the

@@ -122,7 +122,7 @@ void hybrid_planes_choose(Hybrid *hybrid);
 void hybrid_planes_weigh(const Hybrid *hybrid, int64_t slice, HybridPlanes *planes);
 /** Bonds of a slice have their geometries, or other ones. */
 void hybrid_planes_mark(Hybrid *hybrid, int64_t slice);
-void LANES_NAMED(hybrid_planes)(const Hybrid *hybrid, const HybridStripe *stripe);
+void LANES_NAMED(hybrid_planes)(const Hybrid *hybrid, double *const *displacement, const HybridStripe *stripe);
 
 struct Hybrid {
   const Particles *particles;
@@ -322,9 +322,10 @@ size_t hybrid_lattices_bytes(const Hybrid *h);
 /** Members of a lane of an owned slot by the bonds that are intact now, in the order of a geometry's. @return false: it carries nothing */
 bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view);
 
-/** Strain and stress of a row as they were found last; where points keep none, those of the displacements held less `time` times the velocities held. */
-void hybrid_tensors(const Hybrid *hybrid, int64_t row, const HybridView *view, double time, double strain[6],
-                    double stress[6]);
+/** Strain and stress of a row as they were found last; where points keep none, those of displacements u less `time`
+ *  times the velocities held. */
+void hybrid_tensors(const Hybrid *hybrid, int64_t row, const HybridView *view, double *const *u, double time,
+                    double strain[6], double stress[6]);
 /** Hooke's law of a material of the hybrid's. @param[in,out] strain  across the plane of plane stress it is found */
 void hybrid_hooke_stress(const HybridHooke *hooke, double strain[6], double stress[6]);
 
@@ -352,10 +353,10 @@ double hybrid_share_inside(const Hybrid *h, const HybridView *view);
 
 /** As FormulationType describes them (hybrid_bonds.c). */
 void hybrid_face_force(const void *formulation, int64_t place, double force[3]);
-void hybrid_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                       double state[3]);
+void hybrid_half_state(const void *formulation, double *const *displacement, double *const *linearised_at,
+                       int64_t slice, int64_t slot, int lane, double state[3]);
 int64_t hybrid_point_count(const void *formulation);
-int hybrid_point(const void *formulation, int64_t number, Operator *point, Error *error);
+int hybrid_point(const void *formulation, double *const *displacement, int64_t number, Operator *point, Error *error);
 void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
 void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
                            double *shear);

@@ -11,7 +11,7 @@ int64_t hybrid_point_count(const void *formulation)
   return h->bonds->count;
 }
 
-int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *error)
+int hybrid_point(const void *formulation, double *const *displacement, int64_t row, Operator *point, Error *error)
 {
   const Hybrid *h = formulation;
   HybridView view;
@@ -33,7 +33,7 @@ int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *e
   point->acts_apart = h->pairwise;
   point->volume = view.volume;
   double strain[6];
-  hybrid_tensors(h, row, &view, 0, strain, point->stress);
+  hybrid_tensors(h, row, &view, displacement, 0, strain, point->stress);
   points_tangent(h->points, row, point->tangent);
   hybrid_laminate_stress(h, view.laminate, point->stress);
   hybrid_laminate_tangent(h, view.laminate, point->tangent);
@@ -62,11 +62,12 @@ static void find_change(const Hybrid *h, int64_t row, const HybridView *view, co
 }
 
 /** F S of a row times its volume, of the state evaluated last; in a linearised step its change. */
-static void find_stress(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, double p[9])
+static void find_stress(const Hybrid *h, int64_t row, const HybridView *view, double *const *u, double *const *at,
+                        double p[9])
 {
   double g[9], g0[9], strain[6], stress[6], held[6];
-  hybrid_gradient(view, h->particles->displacement, g);
-  if (!at || !h->hooke) hybrid_tensors(h, row, view, 0, strain, stress);
+  hybrid_gradient(view, u, g);
+  if (!at || !h->hooke) hybrid_tensors(h, row, view, u, 0, strain, stress);
   memcpy(held, stress, sizeof held);
   if (at) {
     hybrid_gradient(view, at, g0);
@@ -98,13 +99,13 @@ static double share_of_end(const Hybrid *h, const HybridView *view, int end)
 }
 
 /** @param[in,out] force  on a place, from another one, by one point */
-static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, const int32_t places[2],
-                     double force[3])
+static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, double *const *u, double *const *at,
+                     const int32_t places[2], double force[3])
 {
   const int here = hybrid_member_of(view, places[0]), there = hybrid_member_of(view, places[1]);
   double part[3], p[9];
   if (view->idle || here == view->count || there == view->count) return;
-  find_stress(h, row, view, at, p);
+  find_stress(h, row, view, u, at, p);
   const int sole = here >= 2 ? here : there; /* the one that is no end */
   if (sole >= 2) {
     const double share = share_of_end(h, view, here >= 2 ? there : here);
@@ -121,8 +122,8 @@ static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, doubl
   }
 }
 
-void hybrid_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                       double state[3])
+void hybrid_half_state(const void *formulation, double *const *u, double *const *at, int64_t slice, int64_t slot,
+                       int lane, double state[3])
 {
   const Hybrid *h = formulation;
   const int32_t places[2] = {(int32_t)(slice * SLICE + lane), family_bond(h->family, slice, slot, lane).neighbour};
@@ -133,7 +134,7 @@ void hybrid_half_state(const void *formulation, double *const *at, int64_t slice
     for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
       if (!hybrid_rows_near(h, &rows, places[!end])) continue;
       hybrid_view_at(h, &row, &view);
-      if (!end || hybrid_member_of(&view, places[0]) >= 2) add_pair(h, rows.row, &view, at, places, force);
+      if (!end || hybrid_member_of(&view, places[0]) >= 2) add_pair(h, rows.row, &view, u, at, places, force);
     }
   }
   const double share = is_foreign(h->foreign, places[1]) ? 1 : 0.5; /* others give what is theirs */
@@ -171,7 +172,7 @@ void hybrid_face_force(const void *formulation, int64_t place, double force[3])
       const int member = hybrid_member_of(&view, (int32_t)place);
       if (view.idle || member == view.count || (own ? member >= 2 : member < 2 || view.member[0] != from)) continue;
       double p[9], part[3];
-      find_stress(h, rows.row, &view, NULL, p);
+      find_stress(h, rows.row, &view, h->particles->displacement, NULL, p);
       member_force(h, &view, p, member, part);
       for (int k = 0; k < 3; ++k) force[k] -= (hybrid_share_inside(h, &view) - inside) * part[k];
     }
@@ -228,7 +229,7 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   for (int n = 0; n < (rows[0] == rows[1] ? 1 : 2); ++n) {
     HybridView view;
     hybrid_view(h, rows[n], &view);
-    hybrid_tensors(h, rows[n], &view, 0, strain, of);
+    hybrid_tensors(h, rows[n], &view, h->particles->displacement, 0, strain, of);
     for (int k = 0; k < 6; ++k) stress[k] += view.volume * of[k];
     for (int k = 0; k < 3; ++k) area[k] += view.area[k];
     volume += view.volume;
@@ -308,7 +309,7 @@ static void find_means(const Hybrid *h, int64_t place, double strain[6], double 
     HybridView view;
     if (!(volume > 0) || is_other_part(h, &at, place)) continue;
     if (h->hooke) hybrid_view_at(h, &at, &view);
-    hybrid_tensors(h, rows.row, &view, 0, here, held);
+    hybrid_tensors(h, rows.row, &view, h->particles->displacement, 0, here, held);
     for (int k = 0; k < 6; ++k) {
       strain[k] += volume * here[k];
       stress[k] += volume * held[k];
@@ -326,7 +327,7 @@ void hybrid_place_gradient(const void *formulation, int64_t place, double f[9])
   const Hybrid *h = formulation;
   double strain[6], stress[6];
   const ShapeTensor shape = shape_tensor(h->family, (int32_t)place, h->dimensions, 0);
-  shape_gradient(h->family, (int32_t)place, shape.inverse, f);
+  shape_gradient(h->family, h->particles->displacement, (int32_t)place, shape.inverse, f);
   if (!h->points->plane_stress) return;
   find_means(h, place, strain, stress);
   f[8] = h->finite ? sqrt(fmax(0, 1 + 2 * strain[ZZ])) : 1 + strain[ZZ];

@@ -13,7 +13,7 @@ static bool counts(const Hybrid *h, int k)
 static double density(const Hybrid *h, int64_t row, const HybridView *view, double time)
 {
   double strain[6], stress[6];
-  hybrid_tensors(h, row, view, time, strain, stress);
+  hybrid_tensors(h, row, view, h->particles->displacement, time, strain, stress);
   return points_energy_at(points_material(h->points, row), stress) * points_softness(h->points, row);
 }
 
@@ -67,7 +67,7 @@ static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, do
 {
   PointInStep point;
   double g[9];
-  hybrid_tensors(h, row, view, time, point.was, point.stress);
+  hybrid_tensors(h, row, view, h->particles->displacement, time, point.was, point.stress);
   take_growth_off(h, view, point.was);
   hybrid_gradient(view, h->particles->displacement, g);
   hybrid_strain(h, g, point.now);
@@ -175,7 +175,7 @@ double hybrid_free_tension(const void *formulation, int64_t place)
     HybridView view;
     if (!(volume > 0)) continue;
     if (h->hooke) hybrid_view_at(h, &at, &view);
-    hybrid_tensors(h, rows.row, &view, 0, strain, stress);
+    hybrid_tensors(h, rows.row, &view, h->particles->displacement, 0, strain, stress);
     sum += (rows.alone ? 1 : 0.5) * volume * (stress[XX] + stress[YY] + (counts(h, ZZ) ? stress[ZZ] : 0));
   }
   return sum;

@@ -526,13 +526,14 @@ void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
   }
   for (int n = 0; n < HYBRID_NEAR; ++n) aside.number[n] = SLICE * n;
   HookeWork w = {.stripe = stripe, .aside = &aside, .sums = sums + sums_margin(h), .room = 2 * sums_margin(h) + SLICE};
-  w.kind = (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (sweep->at ? HOOKE_LINEAR : 0);
+  w.kind =
+      (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (sweep->linearised_at ? HOOKE_LINEAR : 0);
   for (int k = 0; k < 3; ++k) {
-    w.u[k] = h->particles->displacement[k];
-    if (sweep->at) w.at[k] = sweep->at[k];
+    w.u[k] = sweep->displacement[k];
+    if (sweep->linearised_at) w.at[k] = sweep->linearised_at[k];
   }
   clear_stripe(stripe);
   if (w.kind != (w.kind | HOOKE_FINITE | HOOKE_LINEAR)) w.planar = h->planar;
-  if (w.planar) LANES_NAMED(hybrid_planes)(h, stripe);
+  if (w.planar) LANES_NAMED(hybrid_planes)(h, sweep->displacement, stripe);
   walk_stripe(h, &w);
 }

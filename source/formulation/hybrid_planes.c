@@ -36,6 +36,7 @@ typedef struct Column {
 
 typedef struct PlanesWork {
   const Hybrid *h;
+  double *const *displacement;
   const Lattice *lattice;
   const HybridStripe *stripe;
   int axes[3]; /* of the body: that of rows, that of a layer's rows, that of layers */
@@ -68,6 +69,7 @@ LANES_INLINE int64_t slice_at(const PlanesWork *w, int64_t row, int64_t layer, i
 LANES_INLINE void take_line(const PlanesWork *w, int64_t row, int64_t layer)
 {
   const Particles *p = w->h->particles;
+  double *const *displacement = w->displacement;
   const Lanes unit = lanes_set(w->unit / w->lattice->spacing), none = lanes_set(0);
   for (int chunk = -1; chunk <= w->chunks; ++chunk) {
     const int64_t slice = slice_at(w, row, layer, chunk), place = slice * SLICE;
@@ -77,7 +79,7 @@ LANES_INLINE void take_line(const PlanesWork *w, int64_t row, int64_t layer)
       LaneMask there = {0};
       if (slice >= 0 && !full) there = (LaneMask)(lanes_load(p->volume + place + lane) > none);
       for (int c = 0; c < 3; ++c) {
-        const Lanes u = slice < 0 ? none : unit * lanes_load(p->displacement[w->axes[c]] + place + lane);
+        const Lanes u = slice < 0 ? none : unit * lanes_load(displacement[w->axes[c]] + place + lane);
         lanes_store(w->column->line[c] + x + lane, full ? u : lanes_where(there, u));
       }
     }
@@ -543,7 +545,7 @@ static void go_through_block(PlanesWork *w, const HybridLattice *of)
     }
 }
 
-void LANES_NAMED(hybrid_planes)(const Hybrid *h, const HybridStripe *stripe)
+void LANES_NAMED(hybrid_planes)(const Hybrid *h, double *const *displacement, const HybridStripe *stripe)
 {
   _Alignas(64) Column column;
   for (int block = h->particles->block[stripe->first]; block <= h->particles->block[stripe->last - 1]; ++block) {
@@ -552,6 +554,7 @@ void LANES_NAMED(hybrid_planes)(const Hybrid *h, const HybridStripe *stripe)
     if (!of->kind) continue;
     const bool near = of->kinds == NEAR_KINDS;
     PlanesWork w = {.h = h,
+                    .displacement = displacement,
                     .lattice = lattice,
                     .stripe = stripe,
                     .axes = {lattice->axis, lattice->across[0], lattice->across[1]},

@@ -86,8 +86,8 @@ LANES_INLINE void deform_half(const SliceOf *s, const HybridGeometry *geometry, 
   const bool finite = s->h->finite;
   const LaneMask mask = lanes_mask(lanes);
   Lanes g[9], g0[9];
-  lane_gradient(s, geometry, s->h->particles->displacement, lane, g);
-  if (linear && finite) lane_gradient(s, geometry, sweep->at, lane, g0);
+  lane_gradient(s, geometry, sweep->displacement, lane, g);
+  if (linear && finite) lane_gradient(s, geometry, sweep->linearised_at, lane, g0);
   for (int k = 0; k < 9; ++k) store_where(sweep->carry + k * BATCH + at, mask, lanes == 15, g[k]);
   for (int k = 0; k < 6; ++k) {
     const int r = symmetric_row[k], c = symmetric_column[k];
@@ -107,17 +107,18 @@ static void deform_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t nu
   for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n) {
     const Lanes u = lanes_load(h->shown + LANES * (int64_t)h->member[n]);
     for (int j = 0; j < 3; ++j) column[j] += u * lanes_set(h->g[n][j]);
-    for (int k = 0; k < 9 && sweep->at; ++k) at[k] += sweep->at[k / 3][h->member[n]] * h->g[n][k % 3];
+    for (int k = 0; k < 9 && sweep->linearised_at; ++k)
+      at[k] += sweep->linearised_at[k / 3][h->member[n]] * h->g[n][k % 3];
   }
   for (int k = 0; k < 9; ++k) sweep->carry[k * BATCH + i] = g[k] = column[k % 3][k / 3];
-  if (sweep->at)
+  if (sweep->linearised_at)
     hybrid_strain_change(h, at, g, strain);
   else
     hybrid_strain(h, g, strain);
   const HybridLaminate *laminate = hybrid_laminate(h, number);
-  const bool begins = laminate && !sweep->at; /* free strains do not change in a linearised step */
+  const bool begins = laminate && !sweep->linearised_at; /* free strains do not change in a linearised step */
   hybrid_laminate_strain(h, laminate, begins ? hybrid_laminate_free(h, h->member + h->first[number]) : 0, strain);
-  const bool stays = h->idle[number] && !sweep->at; /* as of broken bonds along lattices */
+  const bool stays = h->idle[number] && !sweep->linearised_at; /* as of broken bonds along lattices */
   for (int k = 0; k < 6; ++k)
     if (!stays && (k != ZZ || !h->points->plane_stress)) sweep->strain[k][i] = strain[k];
 }
@@ -152,7 +153,7 @@ static void deform_rows(const Hybrid *h, const Sweep *sweep)
   const Sweep own = *sweep; /* so that stores are seen not to change it */
   SliceOf s;
   find_batch(h, &own, &s);
-  if (own.at)
+  if (own.linearised_at)
     deform_groups(&s, true);
   else
     deform_groups(&s, false);
@@ -166,7 +167,7 @@ int64_t hybrid_show(void *formulation, const Sweep *sweep)
 {
   const Hybrid *h = formulation;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE && h->listed; ++place)
-    for (int k = 0; k < 3; ++k) h->shown[LANES * place + k] = h->particles->displacement[k][place];
+    for (int k = 0; k < 3; ++k) h->shown[LANES * place + k] = sweep->displacement[k][place];
   return -1;
 }
 
@@ -189,7 +190,7 @@ LANES_INLINE void lane_stress(const SliceOf *s, const HybridGeometry *geometry, 
   for (int k = 0; k < 6; ++k) stress[k] = lanes_load(sweep->stress[k] + at);
   for (int k = 0; k < 9 && finite; ++k) g[k] = lanes_load(sweep->carry + k * BATCH + at);
   if (linear && finite) {
-    lane_gradient(s, geometry, sweep->at, lane, g0);
+    lane_gradient(s, geometry, sweep->linearised_at, lane, g0);
     for (int k = 0; k < 6; ++k) held[k] = lanes_load(s->h->points->stress[k] + sweep->row + at);
   }
   for (int r = 0; r < 3; ++r)
@@ -266,7 +267,7 @@ static void respond_lattice(const Hybrid *h, const Sweep *sweep)
   _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
   const int margin = sums_margin(h), room = 2 * margin + SLICE;
   memset(sums, 0, sizeof *sums * (size_t)(3 * lattice->count * room));
-  if (own.at)
+  if (own.linearised_at)
     respond_groups(&s, sums + margin, room, true);
   else
     respond_groups(&s, sums + margin, room, false);
@@ -304,12 +305,12 @@ static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t n
   full_tensor(sweep->stress, i, stress);
   hybrid_laminate_stress(h, laminate, stress);
   for (int k = 0; k < 9; ++k) g[k] = sweep->carry[k * BATCH + i];
-  if (sweep->at) {
+  if (sweep->linearised_at) {
     full_tensor(h->points->stress, sweep->row + i, held);
     hybrid_laminate_stress(h, laminate, held);
-    listed_gradient(h, sweep->at, number, at);
+    listed_gradient(h, sweep->linearised_at, number, at);
   }
-  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  hybrid_first_stress(h, g, stress, sweep->linearised_at ? at : NULL, held, p);
   keep_listed(h, number, p);
 }
 
@@ -324,8 +325,8 @@ static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number
     for (int j = 0; j < 3; ++j) column[j] += u * lanes_set(h->g[n][j]);
   }
   for (int k = 0; k < 9; ++k) g[k] = column[k % 3][k / 3];
-  if (sweep->at) {
-    listed_gradient(h, sweep->at, number, at);
+  if (sweep->linearised_at) {
+    listed_gradient(h, sweep->linearised_at, number, at);
     hybrid_strain(h, at, strain);
     hybrid_laminate_strain(h, laminate, 0, strain);
     hybrid_hooke_stress(&h->hooke[material], strain, held);
@@ -337,7 +338,7 @@ static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number
   hybrid_laminate_strain(h, laminate, 0, strain);
   hybrid_hooke_stress(&h->hooke[material], strain, stress);
   hybrid_laminate_stress(h, laminate, stress);
-  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  hybrid_first_stress(h, g, stress, sweep->linearised_at ? at : NULL, held, p);
   keep_listed(h, number, p);
 }
 
@@ -416,7 +417,7 @@ static void resist_slices(const Hybrid *h, const Sweep *sweep)
       const Lanes volume = lanes_load(p->volume + place);
       const LaneMask there = (LaneMask)(volume > lanes_set(0));
       for (int k = 0; k < 3; ++k)
-        lanes_store(p->internal[k] + place,
+        lanes_store(sweep->internal[k] + place,
                     lanes_where(there, sum[half][k] / lanes_choose(there, volume, lanes_set(1))));
     }
   }

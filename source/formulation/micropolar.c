@@ -140,17 +140,16 @@ static double gyration(const void *formulation, int64_t place)
 static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
-  double *const *u = sweep->at ? sweep->at : m->particles->displacement;
+  double *const *u = sweep->linearised_at ? sweep->linearised_at : sweep->displacement;
   m->sweeps->show(m, u, sweep->first, sweep->last);
-  if (sweep->at && m->sweeps->show_spins) m->sweeps->show_spins(m, u, sweep->first, sweep->last);
+  if (sweep->linearised_at && m->sweeps->show_spins) m->sweeps->show_spins(m, sweep);
   return -1;
 }
 
 static int64_t find_damage(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
-  if (m->damage && !sweep->at && !m->points->elastic_stage)
-    m->damage->sweeps->find_tension(m, sweep->first, sweep->last);
+  if (m->damage && !sweep->linearised_at && !m->points->elastic_stage) m->damage->sweeps->find_tension(m, sweep);
   return -1;
 }
 
@@ -158,22 +157,22 @@ static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
-    if (sweep->at) {
-      if (!m->secant) m->sweeps->resist_changes(m, sweep->at, slice);
-      if (m->secant || m->foreign) micropolar_resist_changes_one_by_one(m, sweep->at, slice, !m->secant);
+    if (sweep->linearised_at) {
+      if (!m->secant) m->sweeps->resist_changes(m, sweep, slice);
+      if (m->secant || m->foreign) micropolar_resist_changes_one_by_one(m, sweep, slice, !m->secant);
       continue;
     }
-    if (micropolar_is_weak(m, slice)) m->damage->sweeps->find_compression(m, slice);
-    if (!m->secant) m->sweeps->resist(m, slice);
-    if (m->secant || m->foreign) micropolar_resist_one_by_one(m, slice, !m->secant);
+    if (micropolar_is_weak(m, slice)) m->damage->sweeps->find_compression(m, sweep->displacement, slice);
+    if (!m->secant) m->sweeps->resist(m, sweep, slice);
+    if (m->secant || m->foreign) micropolar_resist_one_by_one(m, sweep, slice, !m->secant);
   }
   return -1;
 }
 
 /** Links change by what is held and nothing else; those that are damaged by what is left of them. */
-static int linearise(void *formulation, Error *error)
+static int linearise(void *formulation, double *const *displacement, Error *error)
 {
-  (void)formulation, (void)error;
+  (void)formulation, (void)displacement, (void)error;
   return BRECCIA_OK;
 }
 
@@ -185,15 +184,15 @@ static double own_share(const Link *link)
   return link->alone ? 1 : 0.5;
 }
 
-static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                       double state[3])
+static void half_state(const void *formulation, double *const *u, double *const *at, int64_t slice, int64_t slot,
+                       int lane, double state[3])
 {
   const Micropolar *m = formulation;
-  const Link l = micropolar_link(m, at, slice, slot, lane);
+  const Link l = micropolar_link(m, at ? at : u, slice, slot, lane);
   const double *force = l.force;
   LinkChange change;
   if (at) {
-    const LinkMotion motion = micropolar_motion(m, at, slice * SLICE + lane, l.bond.neighbour);
+    const LinkMotion motion = micropolar_motion(m, u, at, slice * SLICE + lane, l.bond.neighbour);
     change = micropolar_change(m, at, slice * SLICE + lane, &l, &motion);
     force = change.force;
   }
@@ -207,7 +206,7 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const Micropolar *m = formulation;
   const Particles *p = m->particles;
   const int64_t place = slice * SLICE + lane;
-  const Link l = micropolar_link(m, NULL, slice, slot, lane);
+  const Link l = micropolar_link(m, p->displacement, slice, slot, lane);
   const double weight = l.bond.weight * p->volume[place];
   double power = 0; /* that the link takes */
   for (int k = 0; k < 3; ++k) power += l.force[k] * (p->velocity[k][l.bond.neighbour] - p->velocity[k][place]);
@@ -283,7 +282,7 @@ static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const Micropolar *m = formulation;
   const ShapeTensor shape = shape_tensor(m->family, (int32_t)place, m->body->dimensions, 0);
-  shape_gradient(m->family, (int32_t)place, shape.inverse, f);
+  shape_gradient(m->family, m->particles->displacement, (int32_t)place, shape.inverse, f);
   if (m->space != SPACE_PLANE_STRESS) return;
   const double nu = poisson_of(m, place),
                sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
@@ -301,7 +300,7 @@ static void stress(const void *formulation, int64_t place, double s[6])
   for (int k = 0; k < 6; ++k) s[k] = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
-    const Link l = micropolar_link(m, NULL, slice, slot, lane);
+    const Link l = micropolar_link(m, m->particles->displacement, slice, slot, lane);
     for (int k = 0; k < 6; ++k)
       s[k] +=
           l.bond.weight / 4 *

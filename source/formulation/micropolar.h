@@ -44,9 +44,9 @@ typedef struct Micropolar Micropolar;
 /** How damage of links is found, for each kind of vectors. */
 typedef struct DamageSweeps {
   /** That in tension of the links of slices, as tried. */
-  void (*find_tension)(const Micropolar *m, int64_t first, int64_t last);
+  void (*find_tension)(const Micropolar *m, const Sweep *sweep);
   /** Then that in compression, which asks how many links of both ends have the former. */
-  void (*find_compression)(const Micropolar *m, int64_t slice);
+  void (*find_compression)(const Micropolar *m, double *const *displacement, int64_t slice);
 } DamageSweeps;
 LANES_CHOICE(const DamageSweeps, micropolar_damage)
 
@@ -64,11 +64,11 @@ typedef struct LinkDamage {
 /** What sweeps over links do, for each kind of vectors. */
 typedef struct MicropolarSweeps {
   /** Forces and moments on a slice. */
-  void (*resist)(const Micropolar *m, int64_t slice);
-  /** Their changes with changes of displacements and rotations, which stand in their places. @param[in] at  where the step was linearised */
-  void (*resist_changes)(const Micropolar *m, double *const *at, int64_t slice);
-  /** What changes of rotations of places are as spins. NULL: the same. */
-  void (*show_spins)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
+  void (*resist)(const Micropolar *m, const Sweep *sweep, int64_t slice);
+  /** Their changes in a linearised step. */
+  void (*resist_changes)(const Micropolar *m, const Sweep *sweep, int64_t slice);
+  /** Spins of places from changes of their rotation vectors in a linearised step. NULL: they are equal. */
+  void (*show_spins)(const Micropolar *m, const Sweep *sweep);
   /** What the places of a slice store in links, but those to other formulations. */
   void (*store)(const Micropolar *m, int64_t slice, double energies[SLICE]);
   /** What slices first .. last - 1 show at rotations among these displacements. */
@@ -149,8 +149,8 @@ typedef struct LinkMotion {
   double apart[3], spin[2][3];
 } LinkMotion;
 
-/** Of changes of displacements and rotations that stand in their places. */
-LinkMotion micropolar_motion(const Micropolar *m, double *const *at, int64_t place, int64_t other);
+/** Returns the motion of a link's ends with changes v of displacements and rotations `at`. */
+LinkMotion micropolar_motion(const Micropolar *m, double *const *v, double *const *at, int64_t place, int64_t other);
 
 /** What a link does with it to the force on this end and the moments on both, per volume of this end and weight of the bond (micropolar_linear.c). */
 typedef struct LinkChange {
@@ -159,21 +159,22 @@ typedef struct LinkChange {
 LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t place, const Link *link,
                              const LinkMotion *motion);
 
-/** Changes of forces and moments of a slice with changes of displacements and rotations, which stand in their places, link by link, or only of its links
- *  to places of other formulations, added to what stands there. */
-void micropolar_resist_changes_one_by_one(const Micropolar *m, double *const *at, int64_t slice, bool only_foreign);
+/** Changes of forces and moments of a slice in a linearised step, link by link, or only of its links to places of other
+ *  formulations, added to what stands there. */
+void micropolar_resist_changes_one_by_one(const Micropolar *m, const Sweep *sweep, int64_t slice, bool only_foreign);
 /** As FormulationType describes them. */
 int64_t micropolar_point_count(const void *formulation);
-int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error);
+int micropolar_point(const void *formulation, double *const *displacement, int64_t number, Operator *point,
+                     Error *error);
 
 /** Stretch of a bond at displacements u. @param[out] y  to the other end, as deformed */
 double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, double y[3]);
 
-/** A link at displacements and rotations `at`; NULL: at those held. */
-Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane);
+/** A link at rows u of displacements and rotations. */
+Link micropolar_link(const Micropolar *m, double *const *u, int64_t slice, int64_t slot, int lane);
 
 /** Forces and moments of a slice, link by link, or only of its links to places of other formulations, added to what stands there. */
-void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice, bool only_foreign);
+void micropolar_resist_one_by_one(const Micropolar *m, const Sweep *sweep, int64_t slice, bool only_foreign);
 
 /* ---- damage ---- */
 

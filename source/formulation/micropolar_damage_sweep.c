@@ -19,10 +19,10 @@ LANES_INLINE Lanes stretch_of(Lanes d)
 }
 
 /** All links of half a slot, also those to places of other formulations. @param[in] u  of this end */
-LANES_INLINE LinkLanes all_links(const Micropolar *m, int64_t slice, int64_t slot, int half, int dimensions,
-                                 const Lanes u[3])
+LANES_INLINE LinkLanes all_links(const Micropolar *m, double *const *displacement, int64_t slice, int64_t slot,
+                                 int half, int dimensions, const Lanes u[3])
 {
-  return links_of(m, m->particles->displacement, slice, slot, half, m->family->intact[slot], dimensions, u);
+  return links_of(m, displacement, slice, slot, half, m->family->intact[slot], dimensions, u);
 }
 
 /** (|y|^2 - |xi|^2) / |xi|^2, |xi| being longer by the free strain. */
@@ -35,9 +35,9 @@ LANES_INLINE Lanes squares_of(const Micropolar *m, int dimensions, const LinkLan
   return left * (lanes_set(2) + left);
 }
 
-LANES_INLINE void load_displacements(const Micropolar *m, int64_t place, int dimensions, Lanes u[3])
+LANES_INLINE void load_displacements(double *const *displacement, int64_t place, int dimensions, Lanes u[3])
 {
-  for (int k = 0; k < dimensions; ++k) u[k] = lanes_load(m->particles->displacement[k] + place);
+  for (int k = 0; k < dimensions; ++k) u[k] = lanes_load(displacement[k] + place);
 }
 
 /** link_damage, lane by lane. */
@@ -92,16 +92,16 @@ LANES_INLINE bool grow(double *const damage[2], int64_t at, LaneMask counts, Lan
 }
 
 /** Whether a link of a slice is beyond the bounds within which none is damaged. */
-LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice, int dimensions)
+LANES_INLINE bool is_beyond(const Micropolar *m, double *const *displacement, int64_t slice, int dimensions)
 {
   const Family *f = m->family;
   const Lanes longer = lanes_set(m->damage->longer), shorter = lanes_set(m->damage->shorter);
   LaneMask beyond = {0};
   for (int half = 0; half < HALVES; ++half) {
     Lanes u[3];
-    load_displacements(m, slice * SLICE + LANES * half, dimensions, u);
+    load_displacements(displacement, slice * SLICE + LANES * half, dimensions, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = all_links(m, slice, slot, half, dimensions, u);
+      const LinkLanes l = all_links(m, displacement, slice, slot, half, dimensions, u);
       const Lanes d = squares_of(m, dimensions, &l);
       beyond |= ((LaneMask)(d > longer) | (LaneMask)(d < shorter)) & lanes_half(l.intact, half);
     }
@@ -109,11 +109,11 @@ LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice, int dimensions)
   return lanes_any(beyond);
 }
 
-LANES_INLINE void find_tension(const Micropolar *m, int64_t slice, int dimensions)
+LANES_INLINE void find_tension(const Micropolar *m, double *const *displacement, int64_t slice, int dimensions)
 {
   const Family *f = m->family;
   LinkDamage *damage = m->damage;
-  if (!damage->touched[slice] && !is_beyond(m, slice, dimensions)) return;
+  if (!damage->touched[slice] && !is_beyond(m, displacement, slice, dimensions)) return;
   damage->touched[slice] = 1;
   const bool stale = damage->grown[slice] & GROWN_IN_TENSION;
   const Lanes longer = lanes_set(damage->longer), shorter = lanes_set(damage->shorter);
@@ -122,9 +122,9 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice, int dimension
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     Lanes count = lanes_set(0), u[3];
-    load_displacements(m, place, dimensions, u);
+    load_displacements(displacement, place, dimensions, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = all_links(m, slice, slot, half, dimensions, u);
+      const LinkLanes l = all_links(m, displacement, slice, slot, half, dimensions, u);
       const Lanes d = squares_of(m, dimensions, &l);
       Lanes most;
       grown |= grow(damage->tension, slot * SLICE + LANES * half, lanes_half(l.intact, half),
@@ -138,7 +138,7 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice, int dimension
                                    (lanes_any(pressed) ? PRESSED : 0));
 }
 
-LANES_INLINE void find_compression(const Micropolar *m, int64_t slice, int dimensions)
+LANES_INLINE void find_compression(const Micropolar *m, double *const *displacement, int64_t slice, int dimensions)
 {
   const Family *f = m->family;
   LinkDamage *damage = m->damage;
@@ -150,10 +150,10 @@ LANES_INLINE void find_compression(const Micropolar *m, int64_t slice, int dimen
     const int64_t place = slice * SLICE + LANES * half;
     const Lanes own = lanes_load(damage->damaged + place);
     Lanes u[3];
-    load_displacements(m, place, dimensions, u);
+    load_displacements(displacement, place, dimensions, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       const int64_t at = slot * SLICE + LANES * half;
-      const LinkLanes l = all_links(m, slice, slot, half, dimensions, u);
+      const LinkLanes l = all_links(m, displacement, slice, slot, half, dimensions, u);
       const Lanes d = squares_of(m, dimensions, &l);
       /* what is torn just now is pulled, so that it does not matter here */
       const Lanes itself = lanes_where((LaneMask)(lanes_load(damage->tension[0] + at) > lanes_set(0)), lanes_set(1));
@@ -169,21 +169,21 @@ LANES_INLINE void find_compression(const Micropolar *m, int64_t slice, int dimen
 
 /* Loops over components need bounds that the compiler knows. */
 
-static void find_tensions(const Micropolar *m, int64_t first, int64_t last)
+static void find_tensions(const Micropolar *m, const Sweep *sweep)
 {
-  for (int64_t slice = first; slice < last; ++slice)
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
     if (m->space == SPACE_3D)
-      find_tension(m, slice, 3);
+      find_tension(m, sweep->displacement, slice, 3);
     else
-      find_tension(m, slice, 2);
+      find_tension(m, sweep->displacement, slice, 2);
 }
 
-static void find_compressions(const Micropolar *m, int64_t slice)
+static void find_compressions(const Micropolar *m, double *const *displacement, int64_t slice)
 {
   if (m->space == SPACE_3D)
-    find_compression(m, slice, 3);
+    find_compression(m, displacement, slice, 3);
   else
-    find_compression(m, slice, 2);
+    find_compression(m, displacement, slice, 2);
 }
 
 const DamageSweeps LANES_NAMED(micropolar_damage) = {.find_tension = find_tensions,

@@ -20,9 +20,8 @@ static void find_spin(double *const *at, int64_t place, const double change[3], 
   for (int k = 0; k < 3; ++k) spin[k] += a * once[k] + b * twice[k];
 }
 
-LinkMotion micropolar_motion(const Micropolar *m, double *const *at, int64_t place, int64_t other)
+LinkMotion micropolar_motion(const Micropolar *m, double *const *v, double *const *at, int64_t place, int64_t other)
 {
-  double *const *v = m->particles->displacement;
   LinkMotion motion = {.apart = {0}};
   for (int k = 0; k < 3; ++k) motion.apart[k] = v[k][other] - v[k][place];
   for (int end = 0; end < 2; ++end) {
@@ -169,23 +168,24 @@ LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t pla
   return change;
 }
 
-void micropolar_resist_changes_one_by_one(const Micropolar *m, double *const *at, int64_t slice, bool only_foreign)
+void micropolar_resist_changes_one_by_one(const Micropolar *m, const Sweep *sweep, int64_t slice, bool only_foreign)
 {
+  double *const *at = sweep->linearised_at;
   const Particles *p = m->particles;
   const Family *f = m->family;
   for (int k = 0; k < p->motions && !only_foreign; ++k)
-    memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+    memset(sweep->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
   for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       if (only_foreign && !is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour)) continue;
       const int64_t place = slice * SLICE + lane;
       const Link l = micropolar_link(m, at, slice, slot, lane);
-      const LinkMotion motion = micropolar_motion(m, at, place, l.bond.neighbour);
+      const LinkMotion motion = micropolar_motion(m, sweep->displacement, at, place, l.bond.neighbour);
       const LinkChange change = micropolar_change(m, at, place, &l, &motion);
-      for (int k = 0; k < 3; ++k) p->internal[k][place] += l.bond.weight * change.force[k];
+      for (int k = 0; k < 3; ++k) sweep->internal[k][place] += l.bond.weight * change.force[k];
       for (int k = ROTATION; k < p->motions; ++k)
-        p->internal[k][place] += l.bond.weight * change.moment[0][p->motions == 4 ? 2 : k - ROTATION];
+        sweep->internal[k][place] += l.bond.weight * change.moment[0][p->motions == 4 ? 2 : k - ROTATION];
     }
 }
 
@@ -205,7 +205,7 @@ static double row_of(const double force[3], const double moment[2][3], int end, 
 }
 
 /** Numbered by slot and lane; a link has one point, of its end with the lower place, or of its only end here. */
-int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error)
+int micropolar_point(const void *formulation, double *const *u, int64_t number, Operator *point, Error *error)
 {
   const Micropolar *m = formulation;
   const Particles *p = m->particles;
@@ -214,7 +214,7 @@ int micropolar_point(const void *formulation, int64_t number, Operator *point, E
   const int64_t place = slice * SLICE + lane;
   operator_clear(point);
   if (!(m->family->intact[slot] >> lane & 1) || is_foreign(m->foreign, place)) return BRECCIA_OK;
-  const Link l = micropolar_link(m, NULL, slice, slot, lane);
+  const Link l = micropolar_link(m, u, slice, slot, lane);
   const double weight = l.bond.weight * p->volume[place];
   if (l.bond.neighbour < place && !l.alone) return BRECCIA_OK;
   if (!operator_add(point, place, error) || !operator_add(point, l.bond.neighbour, error)) return BRECCIA_FAILURE;
@@ -229,9 +229,9 @@ int micropolar_point(const void *formulation, int64_t number, Operator *point, E
     else if (motions == 4)
       motion.spin[end][2] = 1;
     else
-      find_spin(p->displacement, end ? l.bond.neighbour : place,
+      find_spin(u, end ? l.bond.neighbour : place,
                 (const double[]){k == ROTATION, k == ROTATION + 1, k == ROTATION + 2}, motion.spin[end]);
-    const LinkChange change = micropolar_change(m, p->displacement, place, &l, &motion);
+    const LinkChange change = micropolar_change(m, u, place, &l, &motion);
     for (int row = 0; row < 2 * motions; ++row)
       point->stiffness[2 * motions * row + column] =
           weight * row_of(change.force, change.moment, row / motions, row % motions, motions);

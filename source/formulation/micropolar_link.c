@@ -150,9 +150,8 @@ double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, dou
   return d / (1 + sqrt(1 + d));
 }
 
-Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane)
+Link micropolar_link(const Micropolar *m, double *const *u, int64_t slice, int64_t slot, int lane)
 {
-  double *const *u = at ? at : m->particles->displacement;
   const int64_t place = slice * SLICE + lane;
   Link l = {.bond = family_bond(m->family, slice, slot, lane)};
   double chord[3];
@@ -171,20 +170,20 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
   return l;
 }
 
-void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice, bool only_foreign)
+void micropolar_resist_one_by_one(const Micropolar *m, const Sweep *sweep, int64_t slice, bool only_foreign)
 {
   const Particles *p = m->particles;
   const Family *f = m->family;
   for (int k = 0; k < p->motions && !only_foreign; ++k)
-    memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+    memset(sweep->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
   for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       if (only_foreign && !is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour)) continue;
-      const Link l = micropolar_link(m, NULL, slice, slot, lane);
+      const Link l = micropolar_link(m, sweep->displacement, slice, slot, lane);
       const int64_t place = slice * SLICE + lane;
-      for (int k = 0; k < 3; ++k) p->internal[k][place] += l.bond.weight * l.force[k];
+      for (int k = 0; k < 3; ++k) sweep->internal[k][place] += l.bond.weight * l.force[k];
       for (int k = ROTATION; k < p->motions; ++k)
-        p->internal[k][place] += l.bond.weight * l.moment[0][p->motions == 4 ? 2 : k - ROTATION];
+        sweep->internal[k][place] += l.bond.weight * l.moment[0][p->motions == 4 ? 2 : k - ROTATION];
     }
 }

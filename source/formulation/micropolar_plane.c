@@ -49,30 +49,30 @@ LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLan
 }
 
 /** Both kinds of slots have a loop of their own: in one loop for both, forces take 1.5 to 2 times as long, as vectors of it go through memory. */
-static void resist(const Micropolar *m, int64_t slice)
+static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
 {
   const Family *f = m->family;
-  const Particles *p = m->particles;
+  double *const *u = sweep->displacement;
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
+    HalfSlice own = {.u = {lanes_load(u[0] + place), lanes_load(u[1] + place)},
                      .cosine = lanes_load(m->shown[0] + place),
                      .sine = lanes_load(m->shown[1] + place),
                      .moment = {0}};
     own.force[0] = own.force[1] = lanes_set(0);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-      const LinkLanes l = lattice_links(m, p->displacement, place, slot, half, 2, own.u);
+      const LinkLanes l = lattice_links(m, u, place, slot, half, 2, own.u);
       add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slice, slot), 2, own.u);
+      const LinkLanes l = stored_links(m, u, place, slot, half, own_bits(m, slice, slot), 2, own.u);
       add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
-    lanes_store(p->internal[0] + place, own.force[0]);
-    lanes_store(p->internal[1] + place, own.force[1]);
-    lanes_store(p->internal[2] + place, lanes_set(0));
-    lanes_store(p->internal[ROTATION] + place, own.moment);
+    lanes_store(sweep->internal[0] + place, own.force[0]);
+    lanes_store(sweep->internal[1] + place, own.force[1]);
+    lanes_store(sweep->internal[2] + place, lanes_set(0));
+    lanes_store(sweep->internal[ROTATION] + place, own.moment);
   }
 }
 
@@ -112,10 +112,9 @@ typedef struct HalfChange {
 } HalfChange;
 
 /** As the chord turns by t, end rotations change by the spins of the ends less t. */
-LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
+LANES_INLINE void add_change(const Micropolar *m, double *const *v, const LinkLanes *l, StiffnessLanes stiffness,
                              const breccia_link *weak, HalfChange *own)
 {
-  double *const *v = m->particles->displacement;
   const ChordLanes chord = chords_of(m, l, 2);
   weaken(m, weak, l, chord.stretch, &stiffness);
   const AngleLanes angles = angles_of(m, l, &chord, own->cosine, own->sine, stiffness.bending);
@@ -133,30 +132,30 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
   own->moment -= stiffness.bending * (lanes_set(4) * a + lanes_set(2) * b);
 }
 
-static void resist_changes(const Micropolar *m, double *const *at, int64_t slice)
+static void resist_changes(const Micropolar *m, const Sweep *sweep, int64_t slice)
 {
   const Family *f = m->family;
-  const Particles *p = m->particles;
+  double *const *at = sweep->linearised_at, *const *v = sweep->displacement;
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfChange own = {.cosine = lanes_load(m->shown[0] + place),
                       .sine = lanes_load(m->shown[1] + place),
-                      .spin = lanes_load(p->displacement[ROTATION] + place),
+                      .spin = lanes_load(v[ROTATION] + place),
                       .moment = {0}};
     for (int k = 0; k < 2; ++k) {
       own.u[k] = lanes_load(at[k] + place);
-      own.v[k] = lanes_load(p->displacement[k] + place);
+      own.v[k] = lanes_load(v[k] + place);
       own.force[k] = lanes_set(0);
     }
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       const LinkLanes l = links_of(m, at, slice, slot, half, own_bits(m, slice, slot), 2, own.u);
-      add_change(m, &l, stiffness_of_links(m, &l), weak, &own);
+      add_change(m, v, &l, stiffness_of_links(m, &l), weak, &own);
     }
-    lanes_store(p->internal[0] + place, own.force[0]);
-    lanes_store(p->internal[1] + place, own.force[1]);
-    lanes_store(p->internal[2] + place, lanes_set(0));
-    lanes_store(p->internal[ROTATION] + place, own.moment);
+    lanes_store(sweep->internal[0] + place, own.force[0]);
+    lanes_store(sweep->internal[1] + place, own.force[1]);
+    lanes_store(sweep->internal[2] + place, lanes_set(0));
+    lanes_store(sweep->internal[ROTATION] + place, own.moment);
   }
 }
 

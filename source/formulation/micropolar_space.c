@@ -141,31 +141,31 @@ LANES_INLINE void find_matrix(HalfSlice *own)
 }
 
 /** Both kinds of slots have a loop of their own, as in the plane (micropolar_plane.c). */
-static void resist(const Micropolar *m, int64_t slice)
+static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
 {
   const Family *f = m->family;
-  const Particles *p = m->particles;
+  double *const *u = sweep->displacement;
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfSlice own;
     for (int k = 0; k < 3; ++k) {
-      own.u[k] = lanes_load(p->displacement[k] + place);
+      own.u[k] = lanes_load(u[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);
     }
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
     find_matrix(&own);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-      const LinkLanes l = lattice_links(m, p->displacement, place, slot, half, 3, own.u);
+      const LinkLanes l = lattice_links(m, u, place, slot, half, 3, own.u);
       add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slice, slot), 3, own.u);
+      const LinkLanes l = stored_links(m, u, place, slot, half, own_bits(m, slice, slot), 3, own.u);
       add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
     for (int k = 0; k < 3; ++k) {
-      lanes_store(p->internal[k] + place, own.force[k]);
-      lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
+      lanes_store(sweep->internal[k] + place, own.force[k]);
+      lanes_store(sweep->internal[ROTATION + k] + place, own.moment[k]);
     }
   }
 }
@@ -324,10 +324,9 @@ LANES_INLINE void add_twist_change(const Lanes own[4], const Lanes q[4], const L
   }
 }
 
-LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
+LANES_INLINE void add_change(const Micropolar *m, double *const *v, const LinkLanes *l, StiffnessLanes stiffness,
                              const breccia_link *weak, HalfChange *own)
 {
-  double *const *v = m->particles->displacement;
   const ChordLanes links = chords_of(m, l, 3);
   const Lanes *chord = links.m, stretch = links.stretch, over_length = l->by_length * links.inverse;
   Lanes chord_change[3], apart[3];
@@ -369,37 +368,37 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
   }
 }
 
-static void resist_changes(const Micropolar *m, double *const *at, int64_t slice)
+static void resist_changes(const Micropolar *m, const Sweep *sweep, int64_t slice)
 {
   const Family *f = m->family;
-  const Particles *p = m->particles;
+  double *const *at = sweep->linearised_at, *const *v = sweep->displacement;
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfChange own;
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(at[k] + place);
-      own.v[k] = lanes_load(p->displacement[k] + place);
+      own.v[k] = lanes_load(v[k] + place);
       own.spin[k] = lanes_load(m->spin[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);
     }
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       const LinkLanes l = links_of(m, at, slice, slot, half, own_bits(m, slice, slot), 3, own.u);
-      add_change(m, &l, stiffness_of_links(m, &l), weak, &own);
+      add_change(m, v, &l, stiffness_of_links(m, &l), weak, &own);
     }
     for (int k = 0; k < 3; ++k) {
-      lanes_store(p->internal[k] + place, own.force[k]);
-      lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
+      lanes_store(sweep->internal[k] + place, own.force[k]);
+      lanes_store(sweep->internal[ROTATION + k] + place, own.moment[k]);
     }
   }
 }
 
 /** As find_spin of micropolar_linear.c. */
-static void show_spins(const Micropolar *m, double *const *at, int64_t first, int64_t last)
+static void show_spins(const Micropolar *m, const Sweep *sweep)
 {
-  double *const *v = m->particles->displacement;
-  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
+  double *const *at = sweep->linearised_at, *const *v = sweep->displacement;
+  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES) {
     Lanes held[3], spin[3], once[3], twice[3], sine, cosine;
     for (int k = 0; k < 3; ++k) {
       held[k] = lanes_load(at[ROTATION + k] + place);

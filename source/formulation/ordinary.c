@@ -4,11 +4,12 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
   const Particles *p = o->particles;
-  for (int64_t place = sweep->first * SLICE; o->shown && !sweep->at && place < sweep->last * SLICE; ++place) {
+  for (int64_t place = sweep->first * SLICE; o->shown && !sweep->linearised_at && place < sweep->last * SLICE;
+       ++place) {
     double *shown = o->shown + STRETCH_SHOWN * place;
     for (int k = 0; k < 3; ++k) {
       shown[k] = p->position[k][place];
-      shown[4 + k] = p->displacement[k][place];
+      shown[4 + k] = sweep->displacement[k][place];
     }
     shown[3] = p->volume[place];
   }
@@ -18,13 +19,13 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 static int64_t dilate(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
-  return sweep->at ? ordinary_change_dilatation(o, sweep) : o->sweeps->dilate(o, sweep);
+  return sweep->linearised_at ? ordinary_change_dilatation(o, sweep) : o->sweeps->dilate(o, sweep);
 }
 
 static int64_t respond(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
-  if (sweep->at) return ordinary_change_states(o, sweep);
+  if (sweep->linearised_at) return ordinary_change_states(o, sweep);
   if (o->flow && !sweep->no_law) ordinary_flow(o, sweep);
   return o->sweeps->respond(o, sweep);
 }
@@ -32,7 +33,7 @@ static int64_t respond(void *formulation, const Sweep *sweep)
 static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
-  if (sweep->at) return ordinary_change_forces(o, sweep);
+  if (sweep->linearised_at) return ordinary_change_forces(o, sweep);
   o->sweeps->resist(o, sweep);
   if (o->flow) ordinary_flow_resist(o, sweep);
   return -1;

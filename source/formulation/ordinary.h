@@ -219,16 +219,16 @@ void ordinary_state(void *formulation, const char *part, StateList *list);
 double ordinary_history(const void *formulation, int64_t place, int k);
 size_t ordinary_flow_bytes(const Ordinary *o);
 
-void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                         double state[3]);
+void ordinary_half_state(const void *formulation, double *const *displacement, double *const *linearised_at,
+                         int64_t slice, int64_t slot, int lane, double state[3]);
 double ordinary_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 void ordinary_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 void ordinary_gradient(const void *formulation, int64_t place, double f[9]);
 void ordinary_stress(const void *formulation, int64_t place, double stress[6]);
 
-int ordinary_linearise(void *formulation, Error *error);
+int ordinary_linearise(void *formulation, double *const *displacement, Error *error);
 int64_t ordinary_point_count(const void *formulation);
-int ordinary_point(const void *formulation, int64_t place, Operator *point, Error *error);
+int ordinary_point(const void *formulation, double *const *displacement, int64_t place, Operator *point, Error *error);
 int64_t ordinary_change_dilatation(const Ordinary *o, const Sweep *sweep);
 int64_t ordinary_change_states(const Ordinary *o, const Sweep *sweep);
 int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep);

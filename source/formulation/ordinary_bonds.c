@@ -41,20 +41,20 @@ OrdinaryEnd ordinary_end(const Ordinary *o, int64_t place, int64_t at, const Bon
   return end;
 }
 
-void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                         double state[3])
+void ordinary_half_state(const void *formulation, double *const *u, double *const *at, int64_t slice, int64_t slot,
+                         int lane, double state[3])
 {
   const Ordinary *o = formulation;
   const int64_t place = slice * SLICE + lane;
   const Bond bond = ordinary_bond(o, slice, slot, lane);
-  const OrdinaryStretch s = ordinary_stretch(at ? at : o->particles->displacement, place, &bond);
+  const OrdinaryStretch s = ordinary_stretch(at ? at : u, place, &bond);
   const OrdinaryEnd end = ordinary_end(o, place, slot * SLICE + lane, &bond, &s);
   const double omega = bond.weight / o->particles->volume[bond.neighbour], across = end.tension / s.length;
   double change[3], along = 0;
   for (int k = 0; k < 3; ++k) {
     state[k] = omega * across * s.y[k];
     if (!at) continue;
-    change[k] = o->particles->displacement[k][bond.neighbour] - o->particles->displacement[k][place];
+    change[k] = u[k][bond.neighbour] - u[k][place];
     along += change[k] * s.y[k] / s.length;
   }
   for (int k = 0; k < 3 && at; ++k)
@@ -109,7 +109,7 @@ void ordinary_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Ordinary *o = formulation;
   const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, o->dimensions, 0);
-  shape_gradient(o->family, (int32_t)place, shape.inverse, f);
+  shape_gradient(o->family, o->particles->displacement, (int32_t)place, shape.inverse, f);
   if (o->space != SPACE_PLANE_STRESS) return;
   const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2, /* 2 (E_xx + E_yy) */
       inelastic = o->flow ? 2 * o->flow->across[1][place] : 0, freely = ordinary_free(o, place);

@@ -113,7 +113,7 @@ void ordinary_flow_destroy(Ordinary *o)
 /* ---- a family ---- */
 
 /** Scales the deviator of a family back to its yield surface. */
-static void yield(const Ordinary *o, int64_t place, const breccia_deviator *deviator)
+static void yield(const Ordinary *o, double *const *u, int64_t place, const breccia_deviator *deviator)
 {
   const Family *f = o->family;
   Flow *flow = o->flow;
@@ -125,7 +125,7 @@ static void yield(const Ordinary *o, int64_t place, const breccia_deviator *devi
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const OrdinaryStretch s = ordinary_stretch(u, place, &bond);
     const double trial = ordinary_deviatoric(o, place, &bond, &s) - flow->shift[0][slot * SLICE + lane];
     square += bond.weight * trial * trial;
   }
@@ -143,13 +143,13 @@ static void yield(const Ordinary *o, int64_t place, const breccia_deviator *devi
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const OrdinaryStretch s = ordinary_stretch(u, place, &bond);
     const double e = ordinary_deviatoric(o, place, &bond, &s), trial = e - flow->shift[0][at];
     flow->shift[1][at] = r.factor < 1 ? e - r.factor * trial : flow->shift[0][at];
   }
 }
 
-static void relax(const Ordinary *o, int64_t place, const breccia_deviator *deviator)
+static void relax(const Ordinary *o, double *const *u, int64_t place, const breccia_deviator *deviator)
 {
   const Family *f = o->family;
   Flow *flow = o->flow;
@@ -168,7 +168,7 @@ static void relax(const Ordinary *o, int64_t place, const breccia_deviator *devi
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const OrdinaryStretch s = ordinary_stretch(u, place, &bond);
     const double e = ordinary_deviatoric(o, place, &bond, &s), before = flow->last[0][at];
     flow->last[1][at] = o->points->elastic_stage ? before : e;
     flow->shift[1][at] =
@@ -184,9 +184,9 @@ void ordinary_flow(const Ordinary *o, const Sweep *sweep)
       if (o->inverse[place] == 0)
         continue;
       else if (deviator->relaxing > 0)
-        relax(o, place, deviator);
+        relax(o, sweep->displacement, place, deviator);
       else if (isfinite(deviator->yield_stress))
-        yield(o, place, deviator);
+        yield(o, sweep->displacement, place, deviator);
       else
         o->flow->returned[place] = (FlowReturn){.factor = 1};
   }
@@ -194,6 +194,7 @@ void ordinary_flow(const Ordinary *o, const Sweep *sweep)
 
 void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep)
 {
+  double *const *u = sweep->displacement;
   const Family *f = o->family;
   const Flow *flow = o->flow;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
@@ -207,9 +208,9 @@ void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep)
         const double pull =
             o->shear[place] * flow->shift[1][at] + o->shear[bond.neighbour] * flow->shift[1][flow->back[at]];
         if (pull == 0) continue;
-        const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+        const OrdinaryStretch s = ordinary_stretch(u, place, &bond);
         for (int k = 0; k < 3; ++k) force[k] += bond.weight * pull * s.y[k] / s.length;
       }
-      for (int k = 0; k < 3; ++k) o->particles->internal[k][place] -= force[k];
+      for (int k = 0; k < 3; ++k) sweep->internal[k][place] -= force[k];
     }
 }

@@ -19,8 +19,9 @@ LANES_INLINE Lanes at_neighbours(const HalfSlot *h, const double *values)
   return h->stored ? lanes_gather(values, h->stored) : lanes_load(values + h->there);
 }
 
-LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t slice, int64_t slot, int half)
+LANES_INLINE HalfSlot half_slot(const Ordinary *o, const Sweep *sweep, int64_t slice, int64_t slot, int half)
 {
+  double *const *at = sweep->linearised_at, *const *v = sweep->displacement;
   const Family *f = o->family;
   const Particles *p = o->particles;
   const int64_t here = slice * SLICE + LANES * half;
@@ -51,7 +52,7 @@ LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t 
     y[k] = xi[k] + eta;
     square += y[k] * y[k];
     d += eta * (xi[k] + y[k]);
-    h.change[k] = at_neighbours(&h, p->displacement[k]) - lanes_load(p->displacement[k] + here);
+    h.change[k] = at_neighbours(&h, v[k]) - lanes_load(v[k] + here);
   }
   const Lanes length = lanes_root(lanes_choose(h.intact, square, lanes_set(1)));
   h.by_length = lanes_set(1) / length;
@@ -87,7 +88,7 @@ static void change_dilatation(const Ordinary *o, const Sweep *sweep)
       const int64_t here = slice * SLICE + LANES * half;
       Lanes sum = {0}, amount = {0}, evenly = {0};
       for (int64_t slot = o->family->first[slice]; slot < o->family->first[slice + 1]; ++slot) {
-        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half);
+        const HalfSlot h = half_slot(o, sweep, slice, slot, half);
         sum += h.weight * h.reference * h.along;
         if (!o->flow) continue;
         const Lanes kept = kept_by(o, &h, lanes_load(o->dilatation + here),
@@ -179,13 +180,13 @@ static void change_forces(const Ordinary *o, const Sweep *sweep)
       const int64_t here = slice * SLICE + LANES * half;
       Lanes force[3] = {{0}};
       for (int64_t slot = o->family->first[slice]; slot < o->family->first[slice + 1]; ++slot) {
-        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half);
+        const HalfSlot h = half_slot(o, sweep, slice, slot, half);
         const BothEnds ends = both_ends(o, &h, here);
         const Lanes across = ends.tension * h.by_length, pull = ends.turned + (ends.stiffness - across) * h.along;
         for (int k = 0; k < 3; ++k)
           force[k] += lanes_where(h.intact, h.weight * (pull * h.n[k] + across * h.change[k]));
       }
-      for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + here, force[k]);
+      for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + here, force[k]);
     }
 }
 
@@ -195,8 +196,9 @@ int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep)
   return -1;
 }
 
-int ordinary_linearise(void *formulation, Error *error)
+int ordinary_linearise(void *formulation, double *const *displacement, Error *error)
 {
+  (void)displacement;
   Ordinary *o = formulation;
   if (!o->change) o->change = places_array(o->particles->places, "linearised step", error);
   if (o->flow && !o->flow->amount) o->flow->amount = places_array(o->particles->places, "linearised step", error);
@@ -209,12 +211,12 @@ int64_t ordinary_point_count(const void *formulation)
 }
 
 /** @param[in,out] evenly  adds to sum w x |xi| */
-static int add_neighbour(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, Operator *point,
-                         double *evenly, Error *error)
+static int add_neighbour(const Ordinary *o, double *const *u, int64_t place, int64_t at, const Bond *bond,
+                         Operator *point, double *evenly, Error *error)
 {
   OperatorPlace *p = operator_add(point, bond->neighbour, error);
   if (!p) return BRECCIA_FAILURE;
-  const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, bond);
+  const OrdinaryStretch s = ordinary_stretch(u, place, bond);
   const double share = o->inverse[place] * bond->weight * bond->length, shift = o->flow ? o->flow->shift[1][at] : 0,
                spring = o->particles->volume[place] * o->shear[place] * bond->weight,
                along = spring * (o->flow ? o->flow->returned[place].factor : 1),
@@ -234,7 +236,7 @@ static int add_neighbour(const Ordinary *o, int64_t place, int64_t at, const Bon
 }
 
 /** Where families flow the point's second component is sum w x n . du, from which the amount of x has sum w x |xi| / d of the dilatation less. */
-int ordinary_point(const void *formulation, int64_t place, Operator *point, Error *error)
+int ordinary_point(const void *formulation, double *const *u, int64_t place, Operator *point, Error *error)
 {
   const Ordinary *o = formulation;
   const Family *f = o->family;
@@ -247,7 +249,7 @@ int ordinary_point(const void *formulation, int64_t place, Operator *point, Erro
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    if (add_neighbour(o, place, slot * SLICE + lane, &bond, point, &evenly, error)) return BRECCIA_FAILURE;
+    if (add_neighbour(o, u, place, slot * SLICE + lane, &bond, point, &evenly, error)) return BRECCIA_FAILURE;
   }
   const FamilyTangent t = family_tangent(o, place);
   const double inverse = o->inverse[place], less = evenly / o->dimensions;

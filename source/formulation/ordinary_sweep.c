@@ -4,13 +4,13 @@
 #include <math.h>
 
 /** Half a slot between lattice neighbours: -|xi|^2 d, and 2 y. */
-LANES_INLINE Lanes lattice_stretch(const Ordinary *o, const double *doubled, int64_t slice, int64_t slot, int half,
-                                   const Lanes own[3], Lanes twice[3])
+LANES_INLINE Lanes lattice_stretch(const Ordinary *o, double *const *u, const double *doubled, int64_t slice,
+                                   int64_t slot, int half, const Lanes own[3], Lanes twice[3])
 {
   const int64_t there = family_base(o->family, slice, slot) + LANES * half;
   Lanes d = {0};
   for (int k = 0; k < 3; ++k) {
-    const Lanes back = own[k] - lanes_load(o->particles->displacement[k] + there);
+    const Lanes back = own[k] - lanes_load(u[k] + there);
     const Lanes middle = lanes_set(doubled[k]) - back;
     twice[k] = middle - back;
     d += back * middle;
@@ -47,12 +47,12 @@ LANES_INLINE Lanes stretch_of(Lanes d, StretchRange range)
   return d * (lanes_set(1) - g) - g;
 }
 
-LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+LANES_INLINE void dilate_lattice(const Ordinary *o, double *const *u, int64_t slice, int64_t slot, int half, bool gaps,
                                  const float *surface, StretchRange range, const Lanes own[3], Dilated *sum)
 {
   const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryDilating *row = &o->dilating[pattern];
-  Lanes twice[3], d = lattice_stretch(o, row->twice, slice, slot, half, own, twice);
+  Lanes twice[3], d = lattice_stretch(o, u, row->twice, slice, slot, half, own, twice);
   if (gaps) d = lanes_intact(o->family->intact[slot], half, d);
   if (range == RANGE_SERIES) {
     const Lanes square = d * d;
@@ -79,8 +79,8 @@ LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slice, int64_t slot, 
 }
 
 /** Sums of a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool gaps, const float *surface,
-                                       StretchRange range)
+LANES_INLINE StretchRange dilate_slice(const Ordinary *o, double *const *u, int64_t slice, bool gaps,
+                                       const float *surface, StretchRange range)
 {
   const Family *f = o->family;
   Dilated sum[HALVES];
@@ -88,13 +88,13 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
   double most = 0;
   for (int half = 0; half < HALVES; ++half) {
     sum[half] = (Dilated){.within = lanes_all_within()};
-    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + slice * SLICE + LANES * half);
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + slice * SLICE + LANES * half);
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      dilate_lattice(o, slice, slot, half, gaps, surface, range, own[half], &sum[half]);
+      dilate_lattice(o, u, slice, slot, half, gaps, surface, range, own[half], &sum[half]);
   for (int half = 0; half < HALVES; ++half) {
-    const StretchHere at = stretch_here(o->particles, slice, half);
+    const StretchHere at = stretch_here(o->particles, u, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
       dilate_stored(o, slice, slot, half, gaps, surface, range, &at, &walk, &sum[half]);
@@ -108,22 +108,22 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
   return stretch_range_after(range, most);
 }
 
-LANES_INLINE StretchRange dilate_way(const Ordinary *o, int64_t slice, bool gaps, const float *surface,
-                                     StretchRange range)
+LANES_INLINE StretchRange dilate_way(const Ordinary *o, double *const *u, int64_t slice, bool gaps,
+                                     const float *surface, StretchRange range)
 {
-  if (range == RANGE_SERIES) return dilate_slice(o, slice, gaps, surface, RANGE_SERIES);
-  if (range == RANGE_NEWTON) return dilate_slice(o, slice, gaps, surface, RANGE_NEWTON);
-  return dilate_slice(o, slice, gaps, surface, RANGE_ANY);
+  if (range == RANGE_SERIES) return dilate_slice(o, u, slice, gaps, surface, RANGE_SERIES);
+  if (range == RANGE_NEWTON) return dilate_slice(o, u, slice, gaps, surface, RANGE_NEWTON);
+  return dilate_slice(o, u, slice, gaps, surface, RANGE_ANY);
 }
 
 /** Sums of a slice by one way, with what it has of gaps and factors known when this is compiled. */
-static StretchRange dilate_any(const Ordinary *o, int64_t slice, StretchRange range)
+static StretchRange dilate_any(const Ordinary *o, double *const *u, int64_t slice, StretchRange range)
 {
   const float *surface = o->surface ? o->surface[slice] : NULL;
-  if (surface && o->gaps[slice]) return dilate_way(o, slice, true, surface, range);
-  if (surface) return dilate_way(o, slice, false, surface, range);
-  if (o->gaps[slice]) return dilate_way(o, slice, true, NULL, range);
-  return dilate_way(o, slice, false, NULL, range);
+  if (surface && o->gaps[slice]) return dilate_way(o, u, slice, true, surface, range);
+  if (surface) return dilate_way(o, u, slice, false, surface, range);
+  if (o->gaps[slice]) return dilate_way(o, u, slice, true, NULL, range);
+  return dilate_way(o, u, slice, false, NULL, range);
 }
 
 static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
@@ -135,7 +135,7 @@ static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
     StretchRange range = (StretchRange)o->range[slice], next = range;
     for (int turn = 0; turn < 3; ++turn) {
       range = next;
-      next = dilate_any(o, slice, range);
+      next = dilate_any(o, sweep->displacement, slice, range);
       if (next == range) break;
     }
     o->range[slice] = (uint8_t)range;
@@ -170,14 +170,14 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
 }
 
 /** With A = a_i + a_j and C = b_i + b_j - A the force of a bond is w (A + C g) y: e / |y| is g, and |xi| / |y| is 1 - g. */
-LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+LANES_INLINE void resist_lattice(const Ordinary *o, double *const *u, int64_t slice, int64_t slot, int half, bool gaps,
                                  const float *surface, StretchRange range, const Lanes own[3], Lanes base, Lanes slope,
                                  Lanes force[3])
 {
   const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryResisting *row = &o->resisting[pattern];
   const int64_t there = family_base(o->family, slice, slot) + LANES * half;
-  Lanes twice[3], d = lattice_stretch(o, row->twice, slice, slot, half, own, twice), g;
+  Lanes twice[3], d = lattice_stretch(o, u, row->twice, slice, slot, half, own, twice), g;
   const Lanes weight = lanes_set(row->weight);
   base += lanes_load(o->base + there);
   slope += lanes_load(o->slope + there);
@@ -208,38 +208,40 @@ LANES_INLINE void resist_stored(const Ordinary *o, int64_t slice, int64_t slot, 
   for (int k = 0; k < 3; ++k) force[k] += pull * ends.y[k];
 }
 
-LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, const float *surface, StretchRange range)
+LANES_INLINE void resist_slice(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, const float *surface,
+                               StretchRange range)
 {
   const Family *f = o->family;
+  double *const *u = sweep->displacement;
   Lanes own[HALVES][3], force[HALVES][3] = {{{0}}}, base[HALVES], slope[HALVES];
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
     base[half] = lanes_load(o->base + here);
     slope[half] = lanes_load(o->slope + here);
-    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + here);
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + here);
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      resist_lattice(o, slice, slot, half, gaps, surface, range, own[half], base[half], slope[half], force[half]);
+      resist_lattice(o, u, slice, slot, half, gaps, surface, range, own[half], base[half], slope[half], force[half]);
   for (int half = 0; half < HALVES; ++half) {
-    const StretchHere here = stretch_here(o->particles, slice, half);
+    const StretchHere here = stretch_here(o->particles, u, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
       resist_stored(o, slice, slot, half, gaps, surface, range, &here, base[half], slope[half], &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
-    for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
+    for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
-LANES_INLINE void resist_way(const Ordinary *o, int64_t slice, bool gaps, const float *surface)
+LANES_INLINE void resist_way(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, const float *surface)
 {
   const StretchRange range = (StretchRange)o->range[slice];
   if (range == RANGE_SERIES)
-    resist_slice(o, slice, gaps, surface, RANGE_SERIES);
+    resist_slice(o, sweep, slice, gaps, surface, RANGE_SERIES);
   else if (range == RANGE_NEWTON)
-    resist_slice(o, slice, gaps, surface, RANGE_NEWTON);
+    resist_slice(o, sweep, slice, gaps, surface, RANGE_NEWTON);
   else
-    resist_slice(o, slice, gaps, surface, RANGE_ANY);
+    resist_slice(o, sweep, slice, gaps, surface, RANGE_ANY);
 }
 
 static int64_t resist(const Ordinary *ordinary, const Sweep *sweep)
@@ -249,13 +251,13 @@ static int64_t resist(const Ordinary *ordinary, const Sweep *sweep)
   for (int64_t slice = sweep->first; slice < last; ++slice) {
     const float *surface = o->surface ? o->surface[slice] : NULL;
     if (surface && o->gaps[slice])
-      resist_way(o, slice, true, surface);
+      resist_way(o, sweep, slice, true, surface);
     else if (surface)
-      resist_way(o, slice, false, surface);
+      resist_way(o, sweep, slice, false, surface);
     else if (o->gaps[slice])
-      resist_way(o, slice, true, NULL);
+      resist_way(o, sweep, slice, true, NULL);
     else
-      resist_way(o, slice, false, NULL);
+      resist_way(o, sweep, slice, false, NULL);
   }
   return -1;
 }

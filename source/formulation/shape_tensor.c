@@ -89,7 +89,8 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, do
   return shape;
 }
 
-void shape_gradient(const Family *family, int32_t place, const double inverse[6], double f[9])
+void shape_gradient(const Family *family, double *const *displacement, int32_t place, const double inverse[6],
+                    double f[9])
 {
   int64_t slice = place / SLICE;
   int lane = place % SLICE;
@@ -98,7 +99,7 @@ void shape_gradient(const Family *family, int32_t place, const double inverse[6]
     if (!(family->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(family, slice, slot, lane);
     for (int k = 0; k < 9; ++k) {
-      const double *u = family->particles->displacement[k / 3];
+      const double *u = displacement[k / 3];
       moved[k] += bond.weight * (u[bond.neighbour] - u[place]) * bond.xi[k % 3];
     }
   }

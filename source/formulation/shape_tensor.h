@@ -28,6 +28,7 @@ typedef struct ShapeTensor {
 ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, double initial_roundness);
 
 /** Deformation gradient F = I + (sum w eta (x) xi) K^-1 at a place, row by row. */
-void shape_gradient(const Family *family, int32_t place, const double inverse[6], double f[9]);
+void shape_gradient(const Family *family, double *const *displacement, int32_t place, const double inverse[6],
+                    double f[9]);
 
 #endif

@@ -76,12 +76,12 @@ typedef struct StretchHere {
   Lanes x[3], u[3];
 } StretchHere;
 
-LANES_INLINE StretchHere stretch_here(const Particles *p, int64_t slice, int half)
+LANES_INLINE StretchHere stretch_here(const Particles *p, double *const *u, int64_t slice, int half)
 {
   StretchHere here;
   for (int k = 0; k < 3; ++k) {
     here.x[k] = lanes_load(p->position[k] + slice * SLICE + LANES * half);
-    here.u[k] = lanes_load(p->displacement[k] + slice * SLICE + LANES * half);
+    here.u[k] = lanes_load(u[k] + slice * SLICE + LANES * half);
   }
   return here;
 }

@@ -4,11 +4,12 @@
 #include "base/memory.h"
 #include "base/trap.h"
 #include "deck/resolve.h"
+#include "domain/tensor_copy.h"
 #include "loading/support.h"
 #include "model/plausibility.h"
 #include "model/plausibility_parts.h"
 #include "model/sized.h"
-#include "solver/aside.h"
+#include "solver/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -178,28 +179,31 @@ static int even_pull(void *context, int axis, double *force, Error *error)
   const double size = 1e-7;
   breccia_model *model = context;
   Domain *d = &model->domain;
-  Aside aside;
-  double *beside[3] = {0};
-  bool done = aside_create(&aside, d, "faces", error) == BRECCIA_OK;
+  TensorCopy tensors;
+  double *displacement[MOTIONS], *internal[MOTIONS] = {0}, *beside[3] = {0};
+  bool done = tensor_copy_create(&tensors, d, "faces", error) == BRECCIA_OK;
+  done &= vectors_make(displacement, d->particles, "faces", error);
+  done = done && vectors_make(internal, d->particles, "faces", error);
   for (int k = 0; k < 3; ++k) done &= (beside[k] = places_array(d->particles->places, "faces", error)) != NULL;
   if (done) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
-    set_even_pull(model, axis, size, aside.displacement);
-    aside_exchange(&aside, d);
-    domain_evaluate(d);
-    domain_forces_beside(d, beside);
-    aside_exchange(&aside, d);
+    set_even_pull(model, axis, size, displacement);
+    tensor_copy_save(&tensors, d);
+    domain_evaluate(d, &(Evaluation){.displacement = displacement, .internal = internal});
+    domain_forces_beside(d, displacement, beside);
+    tensor_copy_restore(&tensors, d);
     domain_set_elastic_stage(d, elastic);
-    domain_show_states(d);
+    domain_show_states(d, NULL);
     for (int32_t n = 0; n < d->particles->count; ++n) {
       const int32_t i = d->particles->place_of[n];
-      force[i] =
-          (aside.internal[axis][i] - beside[axis][i]) / (size * material_young(&d->materials[d->material[i / SLICE]]));
+      force[i] = (internal[axis][i] - beside[axis][i]) / (size * material_young(&d->materials[d->material[i / SLICE]]));
     }
   }
   for (int k = 0; k < 3; ++k) places_free(&beside[k]);
-  aside_destroy(&aside);
+  vectors_free(displacement);
+  vectors_free(internal);
+  tensor_copy_destroy(&tensors);
   return done ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 

@@ -45,10 +45,10 @@ static double measure_evaluation(breccia_model *model)
   enum { FEWEST = 3 };
   double fastest = INFINITY, before = 0;
   bool quiet = true;
-  domain_evaluate(&model->domain); /* the first touches memory for the first time */
+  domain_evaluate(&model->domain, NULL); /* the first touches memory for the first time */
   const double begin = clock_seconds();
   for (int count = 1;; ++count) {
-    domain_evaluate(&model->domain);
+    domain_evaluate(&model->domain, NULL);
     const double seconds = clock_seconds() - begin, one = seconds / count;
     fastest = fmin(fastest, seconds - before);
     before = seconds;

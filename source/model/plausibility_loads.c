@@ -368,7 +368,7 @@ static int32_t least_balanced(breccia_model *model, double *most)
   uint8_t *held = memory_zeroed((size_t)p->places, 1, "balance", NULL);
   if (!held) return -1;
   loading_mark_held(&model->loading, held);
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   loading_apply(&model->loading, d->particles, 0);
   *most = 0;
   for (int32_t n = 0; n < p->count; ++n) {

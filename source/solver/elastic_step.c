@@ -22,25 +22,13 @@ void elastic_step_destroy(ElasticStep *s)
   vectors_free(s->tried);
 }
 
-/** Forces of an elastic body at other displacements than those held. */
+/** Forces of an elastic body. */
 static void evaluate(Domain *d, double *const at[MOTIONS], double *const force[MOTIONS])
 {
-  Particles *p = d->particles;
   const bool elastic = domain_in_elastic_stage(d);
-  double *held[MOTIONS], *internal[MOTIONS];
-  for (int k = 0; k < p->motions; ++k) {
-    held[k] = p->displacement[k];
-    internal[k] = p->internal[k];
-    p->displacement[k] = at[k];
-    p->internal[k] = force[k];
-  }
   domain_set_elastic_stage(d, true);
-  domain_evaluate(d);
+  domain_evaluate(d, &(Evaluation){.displacement = at, .internal = force});
   domain_set_elastic_stage(d, elastic);
-  for (int k = 0; k < p->motions; ++k) {
-    p->displacement[k] = held[k];
-    p->internal[k] = internal[k];
-  }
 }
 
 void elastic_step_prepare(ElasticStep *s, Domain *d)

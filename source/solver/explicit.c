@@ -147,61 +147,35 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
-/** Returns true if `leaves` strains out suffices for a step in place: explicit_step_back divides the velocity by 1 - c
- * dt / 2, which must stay away from zero. */
-static bool explicit_may_step_in_place(const Explicit *s, bool leaves)
+/** Returns what of the state before a step is copied. Steps of elastic bodies that leave strains out fail only where they
+ *  grow beyond all bounds: explicit_step_back then finds the motion before the step. It divides the velocity by 1 - c
+ *  dt / 2, which must stay away from zero. */
+static Kept explicit_kept(const Explicit *s, bool leaves)
 {
-  return leaves && explicit_mass_damping(s) * s->clock->time_step < 1.5;
+  const bool goes_back = leaves && !(s->viscous.time > 0) && explicit_mass_damping(s) * s->clock->time_step < 1.5;
+  return goes_back ? KEPT_BUT_MOTION : KEPT_TRIED;
 }
 
 /** Accelerations, what stiffness damping and work at faces take, and what a step that fails gives back. */
 static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  const int arrays = explicit_may_step_in_place(s, s->domain->may_leave_tensors) ? 0 : 2 * s->row_count;
-  const size_t begun = (size_t)arrays * sizeof(double) * (size_t)s->domain->particles->places;
-  return vectors_bytes(s->domain->particles) + begun + stiffness_damping_bytes(&s->viscous, s->domain) +
-         face_work_bytes(&s->face_work) + solver_kept_bytes(run, KEPT_BUT_MOTION);
-}
-
-bool explicit_is_in_place(const Explicit *s)
-{
-  return !s->begun.displacement[s->rows[0]];
-}
-
-static void give_up_begun(Explicit *s)
-{
-  explicit_put_arrays_back(s);
-  for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&s->begun.displacement[k]);
-    places_free(&s->begun.velocity[k]);
-  }
+  return vectors_bytes(s->domain->particles) + stiffness_damping_bytes(&s->viscous, s->domain) +
+         face_work_bytes(&s->face_work) + solver_kept_bytes(run, explicit_kept(s, s->domain->may_leave_tensors));
 }
 
 static void give_up_room(Explicit *s)
 {
-  give_up_begun(s);
   solver_forget(s->domain, &s->before);
 }
 
 /** Room for the state that a step begins with; only while steps are taken, as pictures and the like need room afterwards. */
 static int make_room(Explicit *s, Solver *run, Error *error)
 {
-  static const char label[] = "motion before a step";
-  int failed = solver_keep(run, KEPT_BUT_MOTION, &s->before, error);
-  const bool in_place = explicit_may_step_in_place(s, s->domain->leaves_tensors);
-  if (in_place) give_up_begun(s);
-  for (int r = 0; r < s->row_count && !failed && !in_place && !s->begun.displacement[s->rows[r]]; ++r) {
-    const int64_t places = s->domain->particles->places;
-    failed = !(s->begun.velocity[s->rows[r]] = places_array(places, label, error)) ||
-             !(s->begun.displacement[s->rows[r]] = places_array(places, label, error));
-  }
-  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
-}
-
-static void put_arrays_back(Solver *run)
-{
-  explicit_put_arrays_back(run->own);
+  const Kept kept = explicit_kept(s, s->domain->leaves_tensors);
+  if (kept != s->kept) solver_forget(s->domain, &s->before);
+  s->kept = kept;
+  return solver_keep(run, kept, &s->before, error);
 }
 
 static void destroy(Solver *run)
@@ -357,7 +331,7 @@ static int begin(Solver *run, Error *error)
   Explicit *s = run->own;
   Domain *d = s->domain;
   domain_tell_time(d, s->clock->time, 0); /* laws with rates answered to the last step of the stage before already */
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   s->face_work.fresh = false;
   loading_move(s->loading, &(LoadMotion){.velocity = d->particles->velocity});
   loading_apply(s->loading, d->particles, s->clock->time);
@@ -377,7 +351,7 @@ static int begin(Solver *run, Error *error)
 static bool is_sound(const Explicit *s)
 {
   const Domain *d = s->domain;
-  return isfinite(d->force_sum) && d->failed_place < 0 && !forces_failed(&d->forces) && !d->out_of_memory;
+  return domain_has_forces(d) && !forces_failed(&d->forces) && !d->out_of_memory;
 }
 
 /** Displacements at the end of the step. */
@@ -417,7 +391,8 @@ static void answer(void *context)
       d, &(Moment){
              .step = s->clock->step + 1, .time = end, .time_step = s->clock->time_step, .motion = sqrt(3) * s->motion});
   TEAM_SINGLE domain_put_stresses_by(d);
-  domain_forces(d);
+  const Evaluation present = domain_present(d);
+  domain_forces(d, &present);
   if (!is_sound(s)) return;
   domain_accept(d);
   face_work_find(&s->face_work, d);
@@ -446,14 +421,9 @@ static void answer(void *context)
 static void find_drag(Explicit *s)
 {
   Domain *d = s->domain;
-  double *was[MOTIONS] = {NULL};
-  for (int k = 0; k < d->particles->motions; ++k) was[k] = d->particles->displacement[k];
-  for (int r = 0; r < s->row_count; ++r) was[s->rows[r]] = s->begun.displacement[s->rows[r]];
-  stiffness_damping_find(&s->viscous, d, was, s->clock->time_step);
-  if (!d->failure.criterion && !d->gave_up) return;
-  explicit_exchange_motion(s); /* bonds that break next are judged by what particles showed before the step */
-  domain_show_states(d);
-  explicit_exchange_motion(s);
+  stiffness_damping_find(&s->viscous, d, s->clock->time_step);
+  /* Bonds that break next are judged by what particles showed before the step. */
+  if (d->failure.criterion || d->gave_up) domain_show_states(d, s->viscous.was);
 }
 
 static void take_step(void *context)
@@ -476,8 +446,8 @@ static int advance(Solver *run, Text *warning, Error *error)
   loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
                                          .lag = s->clock->time_step / 2,
                                          .damping = explicit_mass_damping(s)});
-  explicit_exchange_motion(s);
   if (s->viscous.time > 0) {
+    stiffness_damping_note(&s->viscous, s->domain->particles);
     team_run(move, s);
     find_drag(s);
     team_run(answer, s);
@@ -501,7 +471,6 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .plan_again = explicit_plan_again,
                                     .begin = begin,
                                     .advance = advance,
-                                    .put_arrays_back = put_arrays_back,
                                     .state = list_state,
                                     .damps = damps,
                                     .damping = damping,

@@ -31,14 +31,7 @@ typedef struct Explicit {
   double period; /* of `quasi_static`: of the slowest vibration that loads set off; else 0 */
   double *acceleration[MOTIONS];
   int rows[MOTIONS], row_count; /* of motion, that something can move */
-  /* What a step begins with stays here: it writes displacements and velocities into other arrays, which change places with these. So nothing need be copied
-   * for a step that fails, and each row is read once. NULL in rows that nothing moves, while no steps are taken, and where steps are taken in place: those of
-   * elastic bodies that leave strains out, which fail only where they grow beyond all bounds. */
-  struct {
-    double *displacement[MOTIONS], *velocity[MOTIONS];
-  } begun;
-  bool exchanged;           /* the particles have arrays of `begun` */
-  StiffnessDamping viscous; /* with damping.stiffness only */
+  StiffnessDamping viscous;     /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
     double from, to;
@@ -46,7 +39,8 @@ typedef struct Explicit {
   } plan;
   double fixed; /* the step that the deck says, or the program's where the deck counts steps; NaN: free to follow */
   int64_t broken_at_estimate, step_at_estimate; /* when the stable step was found */
-  StateCopy before;                             /* what else the step under way has tried, as it was */
+  StateCopy before;                             /* what the step under way tries, as it was */
+  Kept kept;                                    /* what of it is copied */
   struct Motion {                               /* of each constraint in the step under way */
     double target;                              /* displacement at its end */
     double moved;                               /* in the step */
@@ -74,18 +68,11 @@ double explicit_time_after_step(const Explicit *solver);
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
 
-/** Whether steps write over the motion that they begin with. */
-bool explicit_is_in_place(const Explicit *s);
-
-/** Motion before a step that has come to its forces, from that in its middle, where steps are taken in place: but for roundings, and for velocities of what is
+/** Motion before a step that has come to its forces, from that in its middle, where that was not copied: but for roundings, and for velocities of what is
  *  moved, which are the mean of the step. By one thread. */
 void explicit_step_back(Explicit *s);
 
-/** The arrays of the particles' motion change places with those of `begun`. By one thread. */
-void explicit_exchange_motion(Explicit *solver);
-/** After steps: the particles have their own arrays again, with what they hold now; a program may have asked for these once and read them ever since. */
-void explicit_put_arrays_back(Explicit *solver);
-/** First half of a step of a batch, from `begun`: velocities to the middle of the step, displacements to its end. */
+/** First half of a step of a batch: velocities to the middle of the step, displacements to its end. */
 void explicit_kick_and_drift(Explicit *solver, int64_t batch);
 /** Second half: accelerations and velocities at the end of the step. */
 void explicit_kick(Explicit *solver, int64_t batch);

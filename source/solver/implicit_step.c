@@ -84,7 +84,7 @@ static int find_drag(Implicit *s, double *const velocity[MOTIONS], double *const
   if (c.stiffness > 0) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
-    const int status = domain_linearise(d, error);
+    const int status = domain_linearise(d, NULL, error);
     if (!status) domain_linear_step(d, velocity, drag);
     domain_set_elastic_stage(d, elastic);
     if (status) return status;
@@ -281,7 +281,7 @@ int implicit_begin(Solver *run, Error *error)
   const Particles *p = s->domain->particles;
   domain_tell_time(s->domain, run->clock.time, 0);
   if (find_drag(s, p->velocity, s->drag, error)) return BRECCIA_FAILURE;
-  domain_evaluate(s->domain);
+  domain_evaluate(s->domain, NULL);
   increment_start(&s->increment);
   loading_move(s->loading, &(LoadMotion){.velocity = p->velocity});
   newton_apply_loads(&s->newton, run->clock.time);

@@ -128,7 +128,7 @@ void increment_begin(Increment *i)
     i->apart = false;
   }
   if (i->beside[0]) {
-    domain_forces_beside(i->domain, i->beside);
+    domain_forces_beside(i->domain, NULL, i->beside);
     i->held =
         forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - forces_given(&i->domain->forces);
   }
@@ -172,7 +172,7 @@ double increment_sudden_work(Increment *i, double *const moved[MOTIONS])
 {
   const Particles *p = i->domain->particles;
   if (!i->beside[0]) return 0;
-  domain_forces_beside(i->domain, i->beside_now);
+  domain_forces_beside(i->domain, NULL, i->beside_now);
   double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) -
                 forces_given(&i->domain->forces) - i->held;
   for (int k = 0; k < 3; ++k)
@@ -204,7 +204,8 @@ static void break_bonds(void *context)
     Moment moment;
   } *of = context;
   domain_break(of->domain, &of->moment);
-  domain_forces(of->domain);
+  const Evaluation present = domain_present(of->domain);
+  domain_forces(of->domain, &present);
   domain_accept(of->domain);
 }
 

@@ -56,7 +56,7 @@ static int find_point(const Source *source, const Unknowns *u, int64_t number, O
 {
   if (source->forces) return source->forces->point(source->own, number, point, error);
   if (source->load) return source->load->type->point(source->load, u->domain->particles, number, point, error);
-  return source->region->type->point(source->region->formulation, number, point, error);
+  return source->region->type->point(source->region->formulation, u->domain->linearised_at, number, point, error);
 }
 
 static int64_t count_points(const Unknowns *u)
@@ -323,14 +323,14 @@ static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Err
     for (int64_t n = 0; n < source.count && !status; ++n) {
       const double factor = source.region ? 1 + stiffness_share : 1;
       status = find_point(&source, u, n, &point, error);
-      if (!status) join_places(m, &point, u->domain->particles->displacement);
+      if (!status) join_places(m, &point, u->domain->linearised_at);
       const int count = point.count, size = point.motions, wanted = count * size;
       if (!status && wanted > room) {
         room = 2 * wanted;
         free(k);
         if (!(k = memory_zeroed((size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
       }
-      if (!status) status = operator_matrix(&point, u->domain->particles->displacement, k, error);
+      if (!status) status = operator_matrix(&point, u->domain->linearised_at, k, error);
       for (int a = 0; a < count && !status; ++a)
         for (int b = 0; b < count; ++b)
           add_block(m, point.places[a].place, point.places[b].place, k + (int64_t)size * size * (count * a + b), size,

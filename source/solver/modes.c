@@ -481,7 +481,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   if ((double)s.size != size) return error_add(error, BRECCIA_USER_ERROR, "the body is too large for ARPACK");
   const bool elastic = domain_in_elastic_stage(d);
   domain_set_elastic_stage(d, true);
-  int status = domain_linearise(d, error);
+  int status = domain_linearise(d, NULL, error);
   if (!status) forces_linearise(&d->forces);
   domain_set_elastic_stage(d, elastic);
   if (!status) status = create(&s, unknowns, error);
@@ -498,6 +498,6 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   }
   if (!status) status = take_modes(&s, s.projected, modes, error);
   destroy(&s);
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   return status;
 }

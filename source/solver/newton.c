@@ -100,7 +100,7 @@ static void find_roundings(Newton *n)
 
 int newton_linearise(const Newton *n, Error *error)
 {
-  if (domain_linearise(n->domain, error)) return BRECCIA_FAILURE;
+  if (domain_linearise(n->domain, NULL, error)) return BRECCIA_FAILURE;
   forces_linearise(&n->domain->forces);
   const char *failed = forces_failed(&n->domain->forces);
   return failed ? error_add(error, BRECCIA_FAILURE, "out of memory: %s", failed) : BRECCIA_OK;
@@ -113,7 +113,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   if (newton_is_interrupted(n)) return NEWTON_STOPPED;
   if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
   if (n->relaxes)
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
   else if (newton_linearise(n, error))
     return NEWTON_FAILED;
   if (*domain_server_problem(d)) {
@@ -181,17 +181,6 @@ static bool keeps_factors(const Newton *n)
   return n->beside && !n->follows && at_zero && !strained && domain_is_elastic(n->domain) && !n->domain->forces.count;
 }
 
-/** Exchanges the displacements held for others. */
-static void exchange(const Newton *n, double *displacement[MOTIONS])
-{
-  Particles *p = n->domain->particles;
-  for (int k = 0; k < p->motions; ++k) {
-    double *held = p->displacement[k];
-    p->displacement[k] = displacement[k];
-    displacement[k] = held;
-  }
-}
-
 /* Assembling and factoring the matrix of a plate takes tens of times as long as a step with factors that are there. */
 int newton_prepare(Newton *n, Error *error)
 {
@@ -216,15 +205,13 @@ int newton_prepare(Newton *n, Error *error)
   }
   l->stiffness_share = n->factored_share;
   l->mass_factor = n->factored_mass;
-  exchange(n, n->change);
-  int status = domain_linearise(n->domain, error);
+  int status = domain_linearise(n->domain, n->change, error); /* without displacements */
   if (!status) status = linear_solver_prepare(l, error);
-  exchange(n, n->change);
   l->stiffness_share = share;
   l->mass_factor = mass;
   n->factored = !status;
   n->open_in_factors = open;
-  return status ? status : domain_linearise(n->domain, error);
+  return status ? status : domain_linearise(n->domain, NULL, error);
 }
 
 void newton_move(Newton *n, double share)
@@ -464,7 +451,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
       ++n->iterations; /* this one is over */
       return NEWTON_LEFT;
     }
-    if (others && domain_linearise(n->domain, error)) return NEWTON_FAILED;
+    if (others && domain_linearise(n->domain, NULL, error)) return NEWTON_FAILED;
     if (keeps_factors(n) && force > enough * before) n->follows = 1;
   }
   return NEWTON_SLOW;

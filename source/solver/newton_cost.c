@@ -21,7 +21,7 @@ static int try_equations(Newton *n, Trial *least, Error *error)
   const Particles *p = n->domain->particles;
   LinearRecord record;
   const double begin = clock_seconds();
-  if (domain_linearise(n->domain, error)) return BRECCIA_FAILURE;
+  if (domain_linearise(n->domain, NULL, error)) return BRECCIA_FAILURE;
   const double linearised = clock_seconds();
   if (linear_solver_prepare(&n->linear, error)) return BRECCIA_FAILURE;
   const double prepared = clock_seconds();
@@ -47,7 +47,7 @@ int newton_measure(Newton *n, StepCost *cost, Error *error)
     return BRECCIA_OK;
   }
   const double begin = clock_seconds(), enough = 0.1;
-  if (domain_linearise(n->domain, error)) return BRECCIA_FAILURE;
+  if (domain_linearise(n->domain, NULL, error)) return BRECCIA_FAILURE;
   const LinearForesight before = linear_solver_foresee(&n->linear);
   Trial trial = {INFINITY, INFINITY, INFINITY};
   enum { MOST = 10 };

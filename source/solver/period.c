@@ -159,14 +159,14 @@ int period_find(Domain *d, const Loading *loading, double time, double *period, 
                    ? BRECCIA_OK
                    : BRECCIA_FAILURE;
   if (!status) {
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
     find_pull(&s, time);
     status = add_pull_of_strains(&s, time, error);
   }
   if (!status) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
-    status = domain_linearise(d, error);
+    status = domain_linearise(d, NULL, error);
     if (!status) forces_linearise(&d->forces);
     domain_set_elastic_stage(d, elastic);
   }
@@ -182,6 +182,6 @@ int period_find(Domain *d, const Loading *loading, double time, double *period, 
   vectors_free(s.force);
   vectors_free(s.motion);
   vectors_free(s.mass);
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   return status;
 }

@@ -64,8 +64,7 @@ int explicit_retreat(Explicit *s, Error *error)
         (long long)s->clock->step + 1, s->clock->time + dt, s->clock->time_unit, p->number[bad], p->position[0][bad],
         p->position[1][bad], p->position[2][bad], cause, dt, s->clock->time_unit, s->clock->stable, s->clock->time_unit,
         s->ledger->kinetic);
-  if (explicit_is_in_place(s)) explicit_step_back(s);
-  explicit_exchange_motion(s);
+  if (s->kept == KEPT_BUT_MOTION) explicit_step_back(s);
   state_undo(&s->before);
   domain_put_stresses_by(d);
   domain_mend(d);

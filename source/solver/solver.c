@@ -285,10 +285,13 @@ static void list_kept(Solver *s, Kept kept, StateList *list)
   const Particles *p = s->domain->particles;
   domain_state(s->domain, list);
   solver_state(s, list);
-  for (int n = 0; n < list->count && kept == KEPT_BUT_MOTION; ++n)
-    for (int k = 0; k < p->motions; ++k)
-      if (list->rows[n].values == p->displacement[k] || list->rows[n].values == p->velocity[k])
+  for (int n = 0; n < list->count && kept != KEPT_ALL; ++n)
+    for (int k = 0; k < p->motions; ++k) {
+      const bool moves = k < s->domain->body.dimensions || k >= ROTATION;
+      if ((kept == KEPT_BUT_MOTION || !moves) &&
+          (list->rows[n].values == p->displacement[k] || list->rows[n].values == p->velocity[k]))
         list->rows[n].role = STATE_COMMITTED;
+    }
 }
 
 size_t solver_kept_bytes(Solver *s, Kept kept)
@@ -507,7 +510,6 @@ int solver_take_motion(Solver *s, double *const displacement[MOTIONS], double *c
 
 void solver_put_arrays_back(Solver *s)
 {
-  if (s->own && s->type->put_arrays_back) s->type->put_arrays_back(s);
   domain_put_stresses_back(s->domain);
 }
 

@@ -103,8 +103,6 @@ struct SolverType {
   /** One step, of the clock too, and whether the stage has ended; solver_advance says what holds after a failure. BRECCIA_INTERRUPTED: on request there
    *  was none, and the state is as it was. */
   int (*advance)(Solver *solver, Text *warning, Error *error);
-  /** After steps that a program has asked for: the body's arrays are where they were before these. NULL: they never move. */
-  void (*put_arrays_back)(Solver *solver);
   /** Rows of what it keeps. */
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */

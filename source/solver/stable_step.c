@@ -3,7 +3,8 @@
 #include "base/random.h"
 #include "base/team.h"
 #include "base/tridiagonal.h"
-#include "solver/aside.h"
+#include "domain/tensor_copy.h"
+#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -37,8 +38,8 @@ static double radius(const Domain *d, int k, int64_t number)
 
 typedef struct Iteration { /* of Lanczos' method */
   Domain *domain;
-  Aside *aside;
-  double *const *base_u, *const *base_f; /* displacements u and forces f(u) */
+  const Evaluation *of;                  /* of a trial */
+  double *const *base_u, *const *base_f; /* displacements u and forces f(u); NULL: 0 */
   double **previous, **current;
   double h, alpha, beta;
 } Iteration;
@@ -49,13 +50,13 @@ static void apply(void *context)
   const Iteration *n = context;
   Domain *d = n->domain;
   for (int k = 0; k < d->particles->motions; ++k)
-    TEAM_FOR (i, d->particles->places) n->aside->displacement[k][i] = n->base_u[k][i] + n->h * n->current[k][i];
-  TEAM_SINGLE aside_exchange(n->aside, d);
-  domain_forces(d);
-  TEAM_SINGLE aside_exchange(n->aside, d);
+    TEAM_FOR (i, d->particles->places)
+      n->of->displacement[k][i] = (n->base_u ? n->base_u[k][i] : 0) + n->h * n->current[k][i];
+  domain_forces(d, n->of);
   for (int k = 0; k < d->particles->motions; ++k)
     TEAM_FOR (i, d->particles->places)
-      n->aside->internal[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
+      n->of->internal[k][i] =
+          ((n->base_f ? n->base_f[k][i] : 0) - n->of->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
 }
 
 /** Next in the place of previous. */
@@ -64,7 +65,7 @@ static void orthogonalize(void *context)
   const Iteration *n = context;
   for (int k = 0; k < n->domain->particles->motions; ++k)
     TEAM_FOR (i, n->domain->particles->places)
-      n->previous[k][i] = n->aside->internal[k][i] - (n->alpha * n->current[k][i] + n->beta * n->previous[k][i]);
+      n->previous[k][i] = n->of->internal[k][i] - (n->alpha * n->current[k][i] + n->beta * n->previous[k][i]);
 }
 
 static void normalize(void *context)
@@ -82,61 +83,52 @@ static bool are_zero(const Particles *p, double *const *rows)
   return zero;
 }
 
-/** Rows of zeros change places with others, of which no memory is taken as long as nothing is written to them. */
-static void put_aside(const Particles *p, double **rows, double **reserved)
+/** Reserves the rows of a vector; memory is taken where something is written. */
+static bool reserve(double *vector[MOTIONS], const Particles *p, Error *error)
 {
-  for (int k = 0; k < p->motions; ++k) {
-    double *own = rows[k];
-    rows[k] = reserved[k];
-    reserved[k] = own;
-  }
+  for (int k = 0; k < MOTIONS; ++k) vector[k] = NULL;
+  for (int k = 0; k < p->motions; ++k)
+    if (!(vector[k] = places_reserved(p->places, "stable step", error))) return false;
+  return true;
 }
 
-static void take_back(const Particles *p, double **rows, double **reserved)
-{
-  for (int k = 0; k < p->motions; ++k) memset(reserved[k], 0, sizeof(double) * (size_t)p->places);
-  put_aside(p, rows, reserved);
-}
-
+/* Memory is short before the first step of a large body: rows of the particles that are zero serve as vectors, and are
+ * zero again afterwards. */
 int stable_step(Domain *d, double *step, Error *error)
 {
-  const int64_t places = d->particles->places;
-  const int motions = d->particles->motions;
-  Aside aside;
-  double *own_f[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
-  int failed = aside_create(&aside, d, "stable step", error) != BRECCIA_OK;
-  for (int k = 0; k < motions; ++k) {
-    failed |= !(own_f[k] = places_reserved(places, "stable step", error));
-    for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_reserved(places, "stable step", error));
-  }
+  Particles *p = d->particles;
+  const int64_t places = p->places;
+  const int motions = p->motions;
+  TensorCopy tensors;
+  double *own_u[MOTIONS] = {0}, *own_f[MOTIONS] = {0}, *base[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
+  int failed = tensor_copy_create(&tensors, d, "stable step", error) != BRECCIA_OK;
+  failed |= !reserve(own_u, p, error) || !reserve(own_f, p, error) || !reserve(base, p, error);
+  for (int n = 0; n < VECTORS; ++n) failed |= !reserve(v[n], p, error);
   if (failed) goto done;
 
   /* Forces of elastic bodies follow from displacements, and are evaluated before steps begin. */
-  const bool lean = d->leaves_tensors, at_zero = lean && are_zero(d->particles, d->particles->displacement),
-             at_rest = at_zero && are_zero(d->particles, d->particles->velocity);
-  double *const *u = d->particles->displacement, *const *base_f = lean ? d->particles->internal : own_f;
+  const bool lean = d->leaves_tensors, at_zero = lean && are_zero(p, p->displacement),
+             at_rest = at_zero && are_zero(p, p->velocity);
+  double *const *base_f = lean ? p->internal : base;
   const bool elastic = domain_in_elastic_stage(d), old = d->tensors_are_old;
+  tensor_copy_save(&tensors, d);
   domain_set_elastic_stage(d, true);
-  Iteration it = {.domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1]};
-  if (lean)
-    domain_evaluate(d);
-  else {
-    for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
-    aside_exchange(&aside, d);
-    domain_evaluate(d);
-    aside_exchange(&aside, d);
-    for (int k = 0; k < motions; ++k) memcpy(own_f[k], aside.internal[k], sizeof(double) * (size_t)places);
-  }
-  const bool bears_nothing = at_zero && are_zero(d->particles, d->particles->internal);
-  if (at_zero) put_aside(d->particles, d->particles->displacement, aside.displacement);
-  if (bears_nothing) put_aside(d->particles, d->particles->internal, aside.internal);
-  if (at_rest) put_aside(d->particles, d->particles->velocity, v[0]);
+  domain_evaluate(d, &(Evaluation){.displacement = p->displacement, .internal = base_f});
+  const bool bears_nothing = at_zero && are_zero(p, p->internal);
+  const Evaluation trial = {.displacement = at_zero ? p->displacement : own_u,
+                            .internal = bears_nothing ? p->internal : own_f};
+  Iteration it = {.domain = d,
+                  .of = &trial,
+                  .base_u = at_zero ? NULL : p->displacement,
+                  .base_f = bears_nothing ? NULL : base_f,
+                  .previous = at_rest ? p->velocity : v[0],
+                  .current = v[1]};
 
   uint64_t seed = 1;
   for (int k = 0; k < motions; ++k)
-    for (int64_t n = 0; n < d->particles->count; ++n) {
+    for (int64_t n = 0; n < p->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      it.current[k][d->particles->place_of[n]] = k < d->body.dimensions || k >= ROTATION ? r / radius(d, k, n) : 0;
+      it.current[k][p->place_of[n]] = k < d->body.dimensions || k >= ROTATION ? r / radius(d, k, n) : 0;
     }
   double norm = sqrt(mass_product(d, it.current, it.current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;
@@ -146,7 +138,7 @@ int stable_step(Domain *d, double *step, Error *error)
   it.h = 1e-7 * d->body.largest_spacing * norm;
   for (int n = 0; n < MOST_ITERATIONS; ++n) {
     team_run(apply, &it);
-    it.alpha = alpha[n] = mass_product(d, aside.internal, it.current);
+    it.alpha = alpha[n] = mass_product(d, trial.internal, it.current);
     it.beta = beta[n];
     team_run(orthogonalize, &it);
     it.beta = beta[n + 1] = sqrt(mass_product(d, it.previous, it.previous));
@@ -160,10 +152,11 @@ int stable_step(Domain *d, double *step, Error *error)
     it.current = spare;
   }
   domain_set_elastic_stage(d, elastic);
-  if (at_zero) take_back(d->particles, d->particles->displacement, aside.displacement);
-  if (bears_nothing) take_back(d->particles, d->particles->internal, aside.internal);
-  if (at_rest) take_back(d->particles, d->particles->velocity, v[0]);
-  domain_show_states(d); /* bonds that break next are judged by what particles show */
+  tensor_copy_restore(&tensors, d);
+  if (at_zero) vectors_clear(p->displacement, p);
+  if (bears_nothing) vectors_clear(p->internal, p);
+  if (at_rest) vectors_clear(p->velocity, p);
+  domain_show_states(d, NULL); /* bonds that break next are judged by what particles show */
   d->tensors_are_old = old || d->leaves_tensors;
   if (!isfinite(largest) || largest < 0)
     failed = error_add(error, BRECCIA_FAILURE,
@@ -173,10 +166,10 @@ int stable_step(Domain *d, double *step, Error *error)
   else /* with what Lanczos' method may still lack after its stopping test */
     *step = 2 / sqrt(largest * 1.005 + forces_eigenvalue(&d->forces));
 done:
-  aside_destroy(&aside);
-  for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&own_f[k]);
-    for (int n = 0; n < VECTORS; ++n) places_free(&v[n][k]);
-  }
+  tensor_copy_destroy(&tensors);
+  vectors_free(own_u);
+  vectors_free(own_f);
+  vectors_free(base);
+  for (int n = 0; n < VECTORS; ++n) vectors_free(v[n]);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }

@@ -295,7 +295,7 @@ static int begin(Solver *run, Error *error)
   vectors_clear(p->velocity, p);
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
-  domain_evaluate(s->domain);
+  domain_evaluate(s->domain, NULL);
   newton_note_forces_held(&s->newton);
   pressing_take_up(&s->newton, NULL);
   increment_start(&s->increment);

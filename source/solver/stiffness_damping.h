@@ -3,13 +3,15 @@
 #ifndef BRECCIA_SOLVER_STIFFNESS_DAMPING_H
 #define BRECCIA_SOLVER_STIFFNESS_DAMPING_H
 
-#include "solver/aside.h"
+#include "domain/tensor_copy.h"
 
 typedef struct StiffnessDamping {
-  double time;           /* b; 0: there is none, and no array */
-  Aside aside;           /* where elastic forces are found */
-  double *drag[MOTIONS]; /* [places] force per volume against the motion, as found last */
-  double *left[MOTIONS]; /* internal forces less these, for loads that look at all forces */
+  double time;            /* b; 0: there is none, and no array */
+  TensorCopy tensors;     /* of the step, which evaluations of elastic forces overwrite */
+  double *was[MOTIONS];   /* displacements before the step */
+  double *force[MOTIONS]; /* elastic forces per volume */
+  double *drag[MOTIONS];  /* [places] force per volume against the motion, as found last */
+  double *left[MOTIONS];  /* internal forces, while those less the drag stand in their place */
 } StiffnessDamping;
 
 /** `damping` is zero; destroy it in any case. */
@@ -18,12 +20,13 @@ void stiffness_damping_destroy(StiffnessDamping *damping);
 /** Memory that it takes. */
 size_t stiffness_damping_bytes(const StiffnessDamping *damping, const Domain *domain);
 
+/** Copies the displacements before a step. */
+void stiffness_damping_note(StiffnessDamping *damping, const Particles *particles);
 /** When displacements are those at the end of the step and nothing else is yet: finds the drag. By one thread, which has the team work.
- *  @param[in] was   displacements before the step
  *  @param[in] step  its length */
-void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double *const was[MOTIONS], double step);
+void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double step);
 
-/** Puts internal forces less drag in the place of internal forces, and back: by all threads. */
+/** Subtracts the drag from the internal forces, for loads that look at all forces, and restores them: by all threads. */
 void stiffness_damping_take_off(StiffnessDamping *damping, Domain *domain);
 void stiffness_damping_put_back(StiffnessDamping *damping, Domain *domain);
 

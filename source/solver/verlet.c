@@ -3,39 +3,6 @@
 #include "solver/explicit.h"
 
 #include <math.h>
-#include <string.h>
-
-static void exchange(double **a, double **b)
-{
-  double *held = *a;
-  *a = *b;
-  *b = held;
-}
-
-void explicit_exchange_motion(Explicit *s)
-{
-  Particles *p = s->domain->particles;
-  if (explicit_is_in_place(s)) return;
-  for (int r = 0; r < s->row_count; ++r) {
-    const int k = s->rows[r];
-    exchange(&p->displacement[k], &s->begun.displacement[k]);
-    exchange(&p->velocity[k], &s->begun.velocity[k]);
-  }
-  s->exchanged = !s->exchanged;
-}
-
-void explicit_put_arrays_back(Explicit *s)
-{
-  const Particles *p = s->domain->particles;
-  const size_t bytes = sizeof(double) * (size_t)p->places;
-  if (!s->exchanged) return;
-  for (int r = 0; r < s->row_count; ++r) {
-    const int k = s->rows[r];
-    memcpy(s->begun.displacement[k], p->displacement[k], bytes);
-    memcpy(s->begun.velocity[k], p->velocity[k], bytes);
-  }
-  explicit_exchange_motion(s);
-}
 
 void explicit_step_back(Explicit *s)
 {
@@ -58,13 +25,10 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   const double *counted = s->domain->counted;
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
-  const bool in_place = explicit_is_in_place(s);
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
-    const double *displacement = in_place ? p->displacement[k] : s->begun.displacement[k],
-                 *velocity = in_place ? p->velocity[k] : s->begun.velocity[k];
     for (int64_t i = first; i < last; i += LANES) {
-      Lanes v = lanes_load(velocity + i), fi = lanes_load(p->internal[k] + i);
+      Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i);
       Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
       Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(counted + i);
@@ -73,7 +37,7 @@ static void kick_and_drift(Explicit *s, int64_t batch)
       damping += drag * work;
       between -= lanes_load(p->inertia[k] + i) * lanes_load(counted + i) * gain * gain;
       if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
-      lanes_store(p->displacement[k] + i, lanes_load(displacement + i) + du);
+      lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
       lanes_store(p->velocity[k] + i, half);
     }
   }

@@ -18,7 +18,7 @@ static inline void shake(breccia_model *m, double by)
 static inline void find_beside(breccia_model *m, double *force[3])
 {
   for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
-  domain_forces_beside(&m->domain, force);
+  domain_forces_beside(&m->domain, NULL, force);
 }
 
 static inline void drop(double *force[3])

@@ -81,7 +81,7 @@ void deform_uniformly(breccia_model *model, const double f[9])
 void compute_forces(breccia_model *model)
 {
   Team *before = team_use(model->team);
-  domain_evaluate(&model->domain);
+  domain_evaluate(&model->domain, NULL);
   team_use(before);
 }
 

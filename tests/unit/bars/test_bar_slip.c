@@ -118,7 +118,7 @@ static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
   for (int64_t k = 9; k <= b->count; ++k) assert_near(b->slips->stress_held[k], 0, 0);
   double *f[3];
   for (int k = 0; k < 3; ++k) f[k] = places_array(p->places, "test", NULL);
-  domain_forces_beside(&m->domain, f);
+  domain_forces_beside(&m->domain, NULL, f);
   for (int64_t n = 0; n < p->count; ++n)
     if (p->position[0][p->place_of[n]] < 0.6) held += p->volume[p->place_of[n]] * f[0][p->place_of[n]];
   assert_near(held, force, 0.01 * force);

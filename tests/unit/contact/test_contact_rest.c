@@ -48,10 +48,10 @@ static void check_changes(breccia_model *m, const char *what)
   wave(m, 1, v);
   for (int side = 0; side < 2; ++side) {
     add(m, side ? h : -h, v);
-    domain_forces_beside(d, forces[side]);
+    domain_forces_beside(d, NULL, forces[side]);
     add(m, side ? -h : h, v);
   }
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   forces_linearise(&d->forces);
   domain_change_forces(d, v, change);
   double largest = 0, worst = 0;
@@ -90,17 +90,17 @@ static void changes_of_forces_are_those_of_small_motions(void **state)
     /* Pressed together by far less than a spacing, and turned. */
     const double pressed[9] = {c, -s * (1 - tiny), 0, s, c * (1 - tiny), 0, 0, 0, 1};
     breccia_model *m = cut_block(spaces[k], "");
-    domain_evaluate(&m->domain); /* faces are chosen as they stand at first */
+    domain_evaluate(&m->domain, NULL); /* faces are chosen as they stand at first */
     deform_uniformly(m, pressed);
-    domain_evaluate(&m->domain);
+    domain_evaluate(&m->domain, NULL);
     check_changes(m, spaces[k]);
     breccia_model_destroy(&m);
 
     m = cut_block(spaces[k], "friction: 0.5");
     Domain *d = &m->domain;
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
     deform_uniformly(m, pressed);
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
     forces_commit(&d->forces);
     check_changes(m, "sticking");
     /* All of the upper half slides along the face. */
@@ -111,7 +111,7 @@ static void changes_of_forces_are_those_of_small_motions(void **state)
       p->displacement[0][i] += c * 1e-6;
       p->displacement[1][i] += s * 1e-6;
     }
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
     check_changes(m, "sliding");
     breccia_model_destroy(&m);
   }
@@ -134,12 +134,12 @@ static breccia_model *unlike_blocks(const char *space, double gap)
       plane ? "" : ", 0");
   Domain *d = &m->domain;
   const Particles *p = d->particles;
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
     for (int64_t i = 0; i < p->places; ++i)
       if (p->block[i / SLICE] == 2) p->displacement[plane ? 1 : 2][i] = near ? -0.02 - gap : -0.0199;
     contact_search(d->forces.own[FORCES_contact]);
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
   }
   return m;
 }
@@ -162,7 +162,7 @@ static void check_matrix(breccia_model *m)
   Matrix matrix = {0};
   double *v[MOTIONS] = {0}, *kv[MOTIONS] = {0};
   assert_true(vectors_make(v, p, "test", NULL) && vectors_make(kv, p, "test", NULL));
-  assert_int_equal(domain_linearise(d, NULL), 0);
+  assert_int_equal(domain_linearise(d, NULL, NULL), 0);
   forces_linearise(&d->forces);
   assert_true(((const Contact *)d->forces.own[0])->joint_count >= 10);
   assert_int_equal(matrix_create(&matrix, &solver.unknowns, NULL), 0);
@@ -190,7 +190,7 @@ static void points_of_pairs_are_what_the_matrix_needs(void **state)
 {
   (void)state;
   breccia_model *m = cut_block("plane strain", "");
-  domain_evaluate(&m->domain);
+  domain_evaluate(&m->domain, NULL);
   deform_uniformly(m, (const double[]){1, 0, 0, 0, 1 - 1e-4, 0, 0, 0, 1});
   check_matrix(m);
   breccia_model_destroy(&m);

@@ -447,7 +447,7 @@ static void forces_of_a_half_torn_bar_are_those_of_its_operator(void **state)
   Operator point = {0};
   breccia_error *error = breccia_error_create();
   for (int64_t i = 0; i < p->places; ++i) {
-    assert_int_equal(correspondence_point(c, i, &point, error), 0);
+    assert_int_equal(correspondence_point(c, p->displacement, i, &point, error), 0);
     if (point.count) operator_add_forces(&point, p->displacement, sum);
   }
   for (int64_t n = 0; n < p->count; ++n)

@@ -263,7 +263,7 @@ static Apart fall_apart(breccia_model *m)
   if (p->orientation[0]) particles_take_rotations(p, 0, p->places);
   Team *team = team_use(m->team);
   domain_tell_time(d, 0, time_step);
-  domain_evaluate(d);
+  domain_evaluate(d, NULL);
   Apart apart = {.stored = domain_stored_energy(d)};
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < p->motions; ++k) {
@@ -272,7 +272,7 @@ static Apart fall_apart(breccia_model *m)
       p->displacement[k][i] += time_step * p->velocity[k][i];
     }
   domain_break(d, &(Moment){.step = 1, .time = time_step, .time_step = time_step, .motion = 1});
-  domain_evaluate(d); /* laws answer to what is left, which settles what families had shared */
+  domain_evaluate(d, NULL); /* laws answer to what is left, which settles what families had shared */
   team_use(team);
   for (int64_t slot = 0; slot < d->family.slots; ++slot) assert_int_equal(d->family.intact[slot], 0);
   apart.booked = d->fracture_energy;

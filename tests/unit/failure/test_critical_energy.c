@@ -13,7 +13,7 @@ static double half_energy(const Domain *d, int64_t slice, int64_t slot, int lane
   const Region *own = domain_region(d, slice * SLICE);
   const Bond bond = family_bond(&d->family, slice, slot, lane);
   double t[3], change[3], sum = 0, square = 0;
-  own->type->half_state(own->formulation, NULL, slice, slot, lane, t);
+  own->type->half_state(own->formulation, d->particles->displacement, NULL, slice, slot, lane, t);
   for (int k = 0; k < 3; ++k) {
     const double *u = d->particles->displacement[k];
     change[k] = bond.xi[k] + u[bond.neighbour] - u[slice * SLICE + lane];

@@ -504,7 +504,7 @@ static void laws_of_hooke_need_no_rows(void **state)
       assert_true(n || !d->regions[0].points.strain[0]);
       step_surely(both[n], cases[c].layers ? 200 : 300);
       assert_true(d->broken_count > 20 || strstr(cases[c].keys, "pairwise"));
-      assert_int_equal(domain_linearise(d, NULL), 0);
+      assert_int_equal(domain_linearise(d, NULL, NULL), 0);
     }
     const Particles *p = both[0]->domain.particles, *q = both[1]->domain.particles;
     const int64_t places = p->places;
@@ -558,7 +558,7 @@ static void stresses_are_foreseen_by_the_law(void **state)
     const Hybrid *h = formulation_of(m);
     step_surely(m, 60);
     for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[0][i] *= 1.2;
-    domain_evaluate(d);
+    domain_evaluate(d, NULL);
     int64_t asked = 0;
     for (int64_t row = 0; row < points->count; ++row) {
       double strain[6], stress[6], size = 0, off = 0;

@@ -101,8 +101,8 @@ static void planes_exert_what_walked_bonds_do(void **state)
       compute_forces(w);
       assert_close(p, q, turn == 1 ? "broken" : turn ? "mended" : "whole");
     }
-    assert_int_equal(domain_linearise(&m->domain, NULL), 0);
-    assert_int_equal(domain_linearise(&w->domain, NULL), 0);
+    assert_int_equal(domain_linearise(&m->domain, NULL, NULL), 0);
+    assert_int_equal(domain_linearise(&w->domain, NULL, NULL), 0);
     double *v[3], *change[2][3], largest = 0;
     for (int k = 0; k < 3; ++k) {
       v[k] = places_array(p->places, "v", NULL);

@@ -102,6 +102,12 @@ static void write_cloud(const char *name, const int n[3], double spacing)
   fclose(file);
 }
 
+/** A sweep over all slices at the displacements held. @param[in] at  of linearised steps; NULL: none */
+static Sweep whole_sweep(const Particles *p, double *const *at)
+{
+  return (Sweep){.last = p->slices, .displacement = p->displacement, .linearised_at = at, .internal = p->internal};
+}
+
 /** Changes along a motion at the displacements held, by sweeps and link by link. */
 static void check_changes(const breccia_model *model)
 {
@@ -119,12 +125,13 @@ static void check_changes(const breccia_model *model)
       if (k < ROTATION && k >= model->domain.body.dimensions) p->displacement[k][i] = 0;
     }
   }
-  if (m->sweeps->show_spins) m->sweeps->show_spins(m, at, 0, p->slices);
+  const Sweep sweep = whole_sweep(p, at);
+  if (m->sweeps->show_spins) m->sweeps->show_spins(m, &sweep);
   for (int64_t slice = 0; slice < p->slices; ++slice) {
-    m->sweeps->resist_changes(m, at, slice);
+    m->sweeps->resist_changes(m, &sweep, slice);
     for (int k = 0; k < p->motions; ++k)
       memcpy(swept[k] + slice * SLICE, p->internal[k] + slice * SLICE, SLICE * sizeof(double));
-    micropolar_resist_changes_one_by_one(m, at, slice, false);
+    micropolar_resist_changes_one_by_one(m, &sweep, slice, false);
   }
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) largest[k >= ROTATION] = fmax(largest[k >= ROTATION], fabs(swept[k][i]));
@@ -147,9 +154,10 @@ typedef struct Ways {
 static Ways ways_of(const breccia_model *model)
 {
   const Micropolar *m = formulation_of(model);
+  const Sweep sweep = whole_sweep(m->particles, NULL);
   Ways ways = {0};
   for (int64_t slice = 0; slice < m->particles->slices; ++slice) {
-    m->sweeps->resist(m, slice);
+    m->sweeps->resist(m, &sweep, slice);
     ways.weak += micropolar_is_weak(m, slice);
     ways.along_rows += m->family->stored[slice] - m->family->first[slice];
     ways.stored += m->family->first[slice + 1] - m->family->stored[slice];
@@ -214,17 +222,18 @@ static void sweeps_are_sums_of_damaged_links(void **state)
       assert_int_equal(ways.along_rows > 0, !cloud);
       double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
       int closed = 0;
+      const Sweep sweep = whole_sweep(p, NULL);
       for (int k = 0; k < p->motions; ++k) {
         memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
         for (int64_t i = 0; i < p->places; ++i)
           most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
       }
       for (int64_t slice = 0; slice < p->slices; ++slice) {
-        micropolar_resist_one_by_one(m, slice, false);
+        micropolar_resist_one_by_one(m, &sweep, slice, false);
         for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
           for (int lane = 0; lane < SLICE; ++lane)
             if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0)
-              closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
+              closed += micropolar_link(m, p->displacement, slice, slot, lane).stretch < 0;
       }
       assert_true(closed > 10);
       for (int k = 0; k < p->motions; ++k)
@@ -284,13 +293,14 @@ static void links_are_damaged_beside_other_formulations(void **state)
       }
     for (int k = 0; k < 3; ++k) assert_near(sum[k] / size, 0, 1e-13);
     int across = 0;
+    const Sweep sweep = whole_sweep(p, NULL);
     for (int64_t slice = 0; slice < p->slices; ++slice) {
       if (m->foreign[slice]) continue;
       double swept[MOTIONS][SLICE], energies[SLICE];
-      m->sweeps->resist(m, slice);
-      micropolar_resist_one_by_one(m, slice, true);
+      m->sweeps->resist(m, &sweep, slice);
+      micropolar_resist_one_by_one(m, &sweep, slice, true);
       for (int k = 0; k < p->motions; ++k) memcpy(swept[k], p->internal[k] + slice * SLICE, sizeof swept[k]);
-      micropolar_resist_one_by_one(m, slice, false);
+      micropolar_resist_one_by_one(m, &sweep, slice, false);
       for (int k = 0; k < p->motions; ++k)
         for (int lane = 0; lane < SLICE; ++lane) {
           const double there = p->internal[k][slice * SLICE + lane];
@@ -305,7 +315,7 @@ static void links_are_damaged_beside_other_formulations(void **state)
         missed = larger_of(missed, fabs(energies[lane] - stored.stored));
         for (int64_t slot = m->family->stored[slice]; slot < m->family->first[slice + 1]; ++slot)
           if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0) {
-            const Link weak = micropolar_link(m, NULL, slice, slot, lane);
+            const Link weak = micropolar_link(m, p->displacement, slice, slot, lane);
             const LinkStiffness whole = micropolar_stiffness(m, slice * SLICE + lane, &weak.bond);
             if (!weak.alone) continue;
             ++across;

@@ -127,7 +127,7 @@ static void halves_of_links_add_up_to_forces(void **state)
     for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
       if (!(f->intact[slot] >> place % SLICE & 1)) continue;
       const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
-      region->type->half_state(region->formulation, NULL, place / SLICE, slot, place % SLICE, half);
+      region->type->half_state(region->formulation, p->displacement, NULL, place / SLICE, slot, place % SLICE, half);
       for (int k = 0; k < 3; ++k) sum[k] += 2 * half[k] * p->volume[bond.neighbour];
     }
     for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal[k][place], 1, 1e-9);
@@ -155,11 +155,12 @@ static void halves_of_changes_add_up_to_the_change(void **state)
         p->displacement[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * random_uniform(&seed);
       }
     }
-    micropolar_resist_changes_one_by_one(region->formulation, at, place / SLICE, false);
+    const Sweep sweep = {.displacement = p->displacement, .linearised_at = at, .internal = p->internal};
+    micropolar_resist_changes_one_by_one(region->formulation, &sweep, place / SLICE, false);
     for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
       if (!(f->intact[slot] >> place % SLICE & 1)) continue;
       const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
-      region->type->half_state(region->formulation, at, place / SLICE, slot, place % SLICE, half);
+      region->type->half_state(region->formulation, p->displacement, at, place / SLICE, slot, place % SLICE, half);
       for (int k = 0; k < 3; ++k) sum[k] += 2 * half[k] * p->volume[bond.neighbour];
     }
     for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal[k][place], 1, 1e-9);

@@ -119,7 +119,7 @@ static Problem pose(breccia_model *model, double mass_factor)
               vectors_make(problem.kv, p, "test", NULL));
   fill_randomly(p, problem.f, 1, 4);
   unknowns_clear_rest(&problem.solver.unknowns, problem.f);
-  assert_int_equal(domain_linearise(problem.domain, NULL), 0);
+  assert_int_equal(domain_linearise(problem.domain, NULL, NULL), 0);
   return problem;
 }
 
@@ -462,7 +462,7 @@ static void broken_bodies_are_solved(void **state)
       }
   for (int64_t s = 0; s < d->particles->slices; ++s)
     if (d->regions->type->renew) d->regions->type->renew(d->regions->formulation, s);
-  assert_int_equal(domain_linearise(d, NULL), 0);
+  assert_int_equal(domain_linearise(d, NULL, NULL), 0);
   load_far_face(&p, 10);
   for (int k = 0; k < 3; ++k) p.f[k][lost] = 0;
   begin(&p, LINEAR_gradients);
@@ -492,7 +492,7 @@ static void strain(const Problem *p, double even, double opening)
     const double x = q->position[0][i], y = q->position[1][i];
     q->displacement[0][i] += even * (x + y) + (x > 0.4 ? opening : 0);
   }
-  assert_int_equal(domain_linearise(p->domain, NULL), 0);
+  assert_int_equal(domain_linearise(p->domain, NULL, NULL), 0);
 }
 
 /** Plastic flow without dilation makes tangents that are not symmetric, softening such that are not definite: conjugate gradients say so, and what is
@@ -635,7 +635,7 @@ static void the_matrix_is_the_stiffness(void **state)
     fill_randomly(p.domain->particles, u, 1e-3, 5);
     for (int k = 0; k < 3; ++k) /* nothing leads out of a plane */
       if (p.solver.unknowns.flat[k]) memset(u[k], 0, sizeof(double) * (size_t)p.domain->particles->places);
-    assert_int_equal(domain_linearise(p.domain, NULL), 0);
+    assert_int_equal(domain_linearise(p.domain, NULL, NULL), 0);
     assert_int_equal(matrix_create(&m, &p.solver.unknowns, NULL), 0);
     assert_int_equal(matrix_fill(&m, &p.solver.unknowns, 0, 10, NULL), 0);
     assert_int_equal(m.size, unknowns_count(&p.solver.unknowns, NULL));

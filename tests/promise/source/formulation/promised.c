@@ -38,9 +38,9 @@ static void *create(const FormulationParts *parts, Error *error)
 }
 
 /** Deformed bond, and its stretch. */
-static double stretch_of(const Promised *p, int64_t place, const Bond *bond, double y[3])
+static double stretch_of(double *const *u, int64_t place, const Bond *bond, double y[3])
 {
-  double *const *u = p->parts.particles->displacement, square = 0;
+  double square = 0;
   for (int k = 0; k < 3; ++k) {
     y[k] = bond->xi[k] + u[k][bond->neighbour] - u[k][place];
     square += y[k] * y[k];
@@ -49,13 +49,13 @@ static double stretch_of(const Promised *p, int64_t place, const Bond *bond, dou
   return sqrt(square) / bond->length - 1;
 }
 
-static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
-                       double state[3])
+static void half_state(const void *formulation, double *const *u, double *const *at, int64_t slice, int64_t slot,
+                       int lane, double state[3])
 {
   (void)at;
   const Promised *p = formulation;
   const Bond bond = family_bond(p->parts.family, slice, slot, lane);
-  const double pull = p->modulus * stretch_of(p, slice * SLICE + lane, &bond, state) / 2;
+  const double pull = p->modulus * stretch_of(u, slice * SLICE + lane, &bond, state) / 2;
   for (int k = 0; k < 3; ++k) state[k] *= pull;
 }
 
@@ -63,24 +63,23 @@ static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Promised *p = formulation;
   const Family *f = p->parts.family;
-  double *const *internal = p->parts.particles->internal;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; ++place) {
     double force[3] = {0}, half[3];
     const int64_t slice = place / SLICE;
     const int lane = (int)(place % SLICE);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       if (!(f->intact[slot] >> lane & 1)) continue;
-      half_state(p, NULL, slice, slot, lane, half);
+      half_state(p, sweep->displacement, NULL, slice, slot, lane, half);
       for (int k = 0; k < 3; ++k) force[k] += 2 * half[k] * family_bond(f, slice, slot, lane).weight;
     }
-    for (int k = 0; k < 3; ++k) internal[k][place] = force[k];
+    for (int k = 0; k < 3; ++k) sweep->internal[k][place] = force[k];
   }
   return -1;
 }
 
-static int linearise(void *formulation, Error *error)
+static int linearise(void *formulation, double *const *displacement, Error *error)
 {
-  (void)formulation;
+  (void)formulation, (void)displacement;
   return error_add(error, BRECCIA_FAILURE, "promised: has no linearised step");
 }
 
@@ -90,9 +89,9 @@ static int64_t point_count(const void *formulation)
   return 0;
 }
 
-static int point(const void *formulation, int64_t number, Operator *op, Error *error)
+static int point(const void *formulation, double *const *displacement, int64_t number, Operator *op, Error *error)
 {
-  (void)formulation, (void)number, (void)op;
+  (void)formulation, (void)displacement, (void)number, (void)op;
   return error_add(error, BRECCIA_FAILURE, "promised: has no points");
 }
 
@@ -109,7 +108,7 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const Bond bond = family_bond(p->parts.family, slice, slot, lane);
   double y[3];
   (void)time;
-  const double stretch = stretch_of(p, place, &bond, y);
+  const double stretch = stretch_of(p->parts.particles->displacement, place, &bond, y);
   *e = (StoredEnergy){.stored = p->modulus * stretch * stretch * bond.length / 2 * p->parts.particles->volume[place] *
                                 bond.weight};
   e->received = e->stored;
