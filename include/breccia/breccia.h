@@ -52,7 +52,9 @@ BRECCIA_API void breccia_text_free(char *text);
 /** One parameter of a law: the reader, the messages, the help and the documentation are made from this. An optional one that is
  *  called "length" is the length over which a fracture energy is spread; a deck that leaves it out takes that of the
  *  formulation.
- *  An optional parameter that is called "dimensions" defaults to the dimension of the body; NaN outside a body. */
+ *  An optional parameter that is called "dimensions" defaults to the dimension of the body; NaN outside a body.
+ *  Parameters with the names of laws that are built in ("tensile strength", "fracture energy", "yield stress", ...) get
+ *  the same checks and advice. */
 typedef struct breccia_parameter { /* a row of a table, and therefore without a size: it stays as it is */
   const char *name;                /* key in the deck, lower case words */
   const char *dimension;           /* "1", "stress", "density", "length", ... (docs/deck.md lists them) */

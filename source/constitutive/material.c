@@ -177,19 +177,28 @@ static int material_examine(const Material *m, char *reason, size_t size)
   return answers ? BRECCIA_OK : BRECCIA_USER_ERROR;
 }
 
-/** Returns the index of a parameter of a law, or -1. */
-static int material_parameter(const breccia_law *law, const char *name)
+const char *parameter_role_name(ParameterRole role)
+{
+  static const char *const names[PARAMETER_ROLES] = {
+#define ROLE(role, name) [PARAMETER_##role] = (name),
+#include "constitutive/parameter_roles.h"
+#undef ROLE
+  };
+  return names[role];
+}
+
+int law_parameter(const breccia_law *law, ParameterRole role)
 {
   for (int k = 0; k < law->parameter_count; ++k)
-    if (!strcmp(law->parameters[k].name, name)) return k;
+    if (!strcmp(law->parameters[k].name, parameter_role_name(role))) return k;
   return -1;
 }
 
 /** Returns true if a law softens along bonds by a tensile strength and a fracture energy. */
 static bool material_softens_along_bonds(const breccia_law *law)
 {
-  return law->components == 1 && law->softening_energy && material_parameter(law, "tensile strength") >= 0 &&
-         material_parameter(law, "fracture energy") >= 0;
+  return law->components == 1 && law->softening_energy && law_parameter(law, PARAMETER_TENSILE_STRENGTH) >= 0 &&
+         law_parameter(law, PARAMETER_FRACTURE_ENERGY) >= 0;
 }
 
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size)
@@ -277,7 +286,7 @@ int material_share_strength(Material *material, double share, char *reason, size
 {
   Material *within = material_within_limits(material), *base = within ? within : material;
   double *values = material_values(base);
-  if (values) values[material_parameter(base->law, "tensile strength")] *= share;
+  if (values) values[law_parameter(base->law, PARAMETER_TENSILE_STRENGTH)] *= share;
   const int status = material_prepare_again(base, values, reason, size);
   free(values);
   if (status) return status;
@@ -366,10 +375,10 @@ int material_create(Material *material, const DeckReader *reader, const Material
   if (!spec->model) return create_remote(material, reader, spec, length);
   char reason[512] = "";
   const breccia_law *law = law_find(reader->context, spec->model);
-  const int at = material_parameter(law, "length"), energy = material_parameter(law, "fracture energy");
+  const int at = law_parameter(law, PARAMETER_LENGTH), energy = law_parameter(law, PARAMETER_FRACTURE_ENERGY);
   const bool given = at >= 0 && !isnan(spec->values[at]);
   if (at >= 0 && !given) spec->values[at] = length;
-  const int wide = material_parameter(law, "dimensions");
+  const int wide = law_parameter(law, PARAMETER_DIMENSIONS);
   if (wide >= 0 && isnan(spec->values[wide])) spec->values[wide] = dimensions;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
   if (status) return refuse(reader, spec, reason);

@@ -6,6 +6,19 @@
 #include "constitutive/remote/remote.h"
 #include "deck/section.h"
 
+/** Roles of parameters outside of their law (parameter_roles.h). */
+typedef enum ParameterRole {
+#define ROLE(role, name) PARAMETER_##role,
+#include "constitutive/parameter_roles.h"
+#undef ROLE
+  PARAMETER_ROLES
+} ParameterRole;
+
+/** Returns the name of the parameters with a role. */
+const char *parameter_role_name(ParameterRole role);
+/** Returns the index of the parameter of a law that has a role; -1: there is none. */
+int law_parameter(const breccia_law *law, ParameterRole role);
+
 typedef struct MaterialSpec {
   SectionHead head;
   const char *model, *opensees, *remote; /* one of them */

@@ -1,8 +1,7 @@
-/* The energy that the control of zero-energy modes holds: what families of correspondence store beside their laws. */
+/* The energy that the control of zero-energy modes holds: what families store beside their laws. */
 #include "domain/domain.h"
 
 #include "base/team.h"
-#include "formulation/correspondence.h"
 #include <string.h>
 
 static void control_energy_of_batch(void *context, int64_t b)
@@ -11,9 +10,9 @@ static void control_energy_of_batch(void *context, int64_t b)
   d->batch_sum[b] = 0;
   for (int64_t slice = d->batches[b].first; slice < d->batches[b].last; ++slice) {
     const Region *region = &d->regions[d->region[slice]];
-    if (strcmp(region->type->name, "correspondence") != 0) continue;
+    if (!region->type->control) continue;
     for (int64_t i = slice * SLICE; i < (slice + 1) * SLICE; ++i)
-      if (d->counted[i] > 0) d->batch_sum[b] += correspondence_held(region->formulation, i);
+      if (d->counted[i] > 0) d->batch_sum[b] += region->type->control->held(region->formulation, i);
   }
 }
 
@@ -29,7 +28,6 @@ bool domain_is_controlled(const Domain *d)
 {
   bool is = false;
   for (int r = 0; r < d->region_count; ++r)
-    is |= !strcmp(d->regions[r].type->name, "correspondence") &&
-          ((const Correspondence *)d->regions[r].formulation)->control != CONTROL_NONE;
+    is |= d->regions[r].type->control && d->regions[r].type->control->acts(d->regions[r].formulation);
   return is;
 }

@@ -146,19 +146,7 @@ bool correspondence_lags(const void *formulation);
 double correspondence_lag_allowed(const void *formulation);
 void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
-/** Whether control keeps its stiffness where points of a material have lost theirs. */
-bool correspondence_control_lasts(const void *formulation, const Material *material);
-/** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines then. */
-bool correspondence_influence_falls(const void *formulation);
-/** Energy that the control stores at a place. */
-double correspondence_held(const void *formulation, int64_t place);
-/** Energies [energy] of a place whose point has less than 0.7 of its stiffness left, as a secant; else zeros. */
-typedef struct YieldedEnergy {
-  double stored;  /* by law and control */
-  double held;    /* of that, by the control of zero-energy modes */
-  double lasting; /* of that, by a control that keeps its stiffness */
-} YieldedEnergy;
-void correspondence_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy);
+extern const ControlType correspondence_control;
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
  *  1 + (G - G^T) / 2. Written less 1.

@@ -45,18 +45,23 @@ static bool fades_in(const Correspondence *c, const Material *m)
                                          : c->fades == FADES_WITH_SOFTENING && m->softening_energy > 0;
 }
 
-bool correspondence_influence_falls(const void *formulation)
+static bool fading_influence_falls(const void *formulation)
 {
   return ((const Correspondence *)formulation)->influence_falls;
 }
 
-bool correspondence_control_lasts(const void *formulation, const Material *material)
+static bool fading_control_lasts(const void *formulation, const Material *material)
 {
   const Correspondence *c = formulation;
   return c->control != CONTROL_NONE && !material->law->linear && !fades_in(c, material);
 }
 
-double correspondence_held(const void *formulation, int64_t place)
+static bool fading_control_acts(const void *formulation)
+{
+  return ((const Correspondence *)formulation)->control != CONTROL_NONE;
+}
+
+static double fading_held(const void *formulation, int64_t place)
 {
   StoredEnergy energy;
   correspondence_stored_energy(formulation, place, 0, &energy);
@@ -78,7 +83,7 @@ static bool has_yielded(const Points *points, const Material *m, int64_t place)
   return work < yielded * (m->bulk * volume * volume + m->shear * deviators);
 }
 
-void correspondence_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy)
+static void fading_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy)
 {
   const Correspondence *c = formulation;
   const Material *m = points_material(c->points, place);
@@ -87,8 +92,14 @@ void correspondence_yielded_energy(const void *formulation, int64_t place, Yield
   StoredEnergy stored;
   correspondence_stored_energy(c, place, 0, &stored);
   *energy = (YieldedEnergy){.stored = stored.stored, .held = stored.held};
-  if (correspondence_control_lasts(c, m)) energy->lasting = stored.held;
+  if (fading_control_lasts(c, m)) energy->lasting = stored.held;
 }
+
+const ControlType correspondence_control = {.acts = fading_control_acts,
+                                            .lasts = fading_control_lasts,
+                                            .influence_falls = fading_influence_falls,
+                                            .held = fading_held,
+                                            .yielded_energy = fading_yielded_energy};
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
 {

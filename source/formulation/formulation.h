@@ -159,6 +159,26 @@ typedef struct SumsAround {
   int64_t most;      /* in a window: of the phase that writes most; 0: it takes none */
 } SumsAround;
 
+/** Energies [energy] of a place whose point has less than 0.7 of its stiffness left, as a secant; else zeros. */
+typedef struct YieldedEnergy {
+  double stored;  /* by law and control */
+  double held;    /* of that, by the control of zero-energy modes */
+  double lasting; /* of that, by a control that keeps its stiffness */
+} YieldedEnergy;
+
+/** Control of zero-energy modes. */
+typedef struct ControlType {
+  /** Returns true if the formulation of the deck has a control. */
+  bool (*acts)(const void *formulation);
+  /** Returns true if control keeps its stiffness where points of a material have lost theirs. */
+  bool (*lasts)(const void *formulation, const Material *material);
+  /** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines then. */
+  bool (*influence_falls)(const void *formulation);
+  /** Energy that the control stores at a place. */
+  double (*held)(const void *formulation, int64_t place);
+  void (*yielded_energy)(const void *formulation, int64_t place, YieldedEnergy *energy);
+} ControlType;
+
 typedef struct FormulationType FormulationType;
 struct FormulationType {
   const char *name, *about, *source, *maturity;
@@ -171,6 +191,9 @@ struct FormulationType {
   bool knows_hooke; /* the formulation finds strains and stresses of points on bonds itself if all laws are Hooke's */
   /** Points whose members have two stiffnesses are laminates: each of the two materials has a point there. */
   bool laminates;
+  bool fixed_poisson;     /* bodies show Poisson's ratio 1/4, in plane stress 1/3, whatever the material says */
+  bool locks;             /* bodies that nearly keep their volume are too stiff in bending */
+  bool shifts_interfaces; /* the softer of two layers acts thinner than it is */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
@@ -295,6 +318,7 @@ struct FormulationType {
    *  inside and minus a particle's share of the area along the normal of a free surface; NAN where that is not known. NULL: it is nowhere.
    *  @param[in] marked  [places] @param[in,out] area  [3][places] */
   void (*even_stress)(const void *formulation, const uint8_t *marked, double *const area[3]);
+  const ControlType *control; /* of zero-energy modes; NULL: none is needed */
   /** Why a free body would gain energy as it moves unless its shortest waves are damped, or NULL where it would not. NULL: it never would. */
   const char *(*flutters)(const void *formulation);
   /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */

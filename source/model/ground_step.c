@@ -3,7 +3,6 @@
 #include "model/ground_step.h"
 
 #include "base/memory.h"
-#include "formulation/correspondence.h"
 #include "loading/load.h"
 #include <math.h>
 #include <stdlib.h>
@@ -70,8 +69,9 @@ static bool ground_step_slips_freely(const Domain *d)
     for (int m = 0; m < d->material_count; ++m) {
       const Region *region = &d->regions[r];
       if (!region_is_made_of(d, region, d->materials[m].name)) continue;
-      freely &= !strcmp(region->type->name, "correspondence") && correspondence_influence_falls(region->formulation) &&
-                !correspondence_control_lasts(region->formulation, &d->materials[m]);
+      const ControlType *control = region->type->control;
+      freely &= control && control->influence_falls(region->formulation) &&
+                !control->lasts(region->formulation, &d->materials[m]);
     }
   return freely;
 }

@@ -164,7 +164,7 @@ static void set_even_pull(const breccia_model *model, int axis, double size, dou
   const bool plane_strain = peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRAIN;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    const bool bonds = !strcmp(domain_region(d, i)->type->name, "bond-based"), solid = d->body.dimensions == 3;
+    const bool bonds = domain_region(d, i)->type->fixed_poisson, solid = d->body.dimensions == 3;
     const double poisson = bonds ? 0.25 : material_poisson(&d->materials[d->material[i / SLICE]]);
     const bool wide = !solid && (bonds || plane_strain);
     const double across = wide ? poisson / (1 - poisson) : poisson;

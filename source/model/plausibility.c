@@ -3,7 +3,6 @@
 #include "constitutive/normal_lengths.h"
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
-#include "formulation/correspondence.h"
 #include "model/ground_step.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,13 +16,17 @@ const MaterialSpec *plausibility_spec(const breccia_model *model, const Material
   return section_find(&model->spec->materials, material->name);
 }
 
-double plausibility_parameter(const breccia_model *model, const Material *material, const char *name)
+double plausibility_parameter(const breccia_model *model, const Material *material, ParameterRole role)
 {
   const MaterialSpec *spec = plausibility_spec(model, material);
   const breccia_law *law = spec && spec->model ? law_find(&model->laws, spec->model) : NULL;
-  for (int k = 0; law && k < law->parameter_count; ++k)
-    if (!strcmp(law->parameters[k].name, name)) return spec->values[k];
-  return NAN;
+  const int k = law ? law_parameter(law, role) : -1;
+  return k < 0 ? NAN : spec->values[k];
+}
+
+const Node *plausibility_parameter_node(const breccia_model *model, const Material *material, ParameterRole role)
+{
+  return section_node(plausibility_spec(model, material), parameter_role_name(role));
 }
 
 /** The region of the first particle that is of a material; NULL: none is, as with that of reinforcing bars. */
@@ -44,7 +47,7 @@ static double wave_speed(const breccia_model *model, const Material *m)
   if (d->body.dimensions == 1 || !region) {
     modulus = material_young(m);
   } else if (peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRESS) {
-    const double ratio = strcmp(region->type->name, "bond-based") != 0 ? material_poisson(m) : 1.0 / 3;
+    const double ratio = region->type->fixed_poisson ? 1.0 / 3 : material_poisson(m);
     modulus = material_young(m) / (1 - ratio * ratio);
   }
   return sqrt(plausibility_in_si(model, "stress", modulus) / plausibility_in_si(model, "density", m->density));
@@ -110,7 +113,8 @@ static bool like_concrete(const breccia_model *model, const Material *m)
   if (called_concrete(m)) return true;
   const double young = plausibility_in_si(model, "stress", material_young(m)),
                density = plausibility_in_si(model, "density", m->density);
-  const double strength = plausibility_in_si(model, "stress", plausibility_parameter(model, m, "tensile strength"));
+  const double strength =
+      plausibility_in_si(model, "stress", plausibility_parameter(model, m, PARAMETER_TENSILE_STRENGTH));
   return young > 15e9 && young < 50e9 && density > 2000 && density < 2600 && strength > 1e6 && strength < 6e6;
 }
 
@@ -143,11 +147,9 @@ static void warn_of_strength(breccia_model *model, const Node *node, const char 
 
 static void check_strength(breccia_model *model, const Material *m)
 {
-  static const char *const names[] = {"tensile strength",   "compressive strength",     "yield stress",
-                                      "undrained strength", "compressive yield stress", "octahedral strength"};
-  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-    warn_of_strength(model, section_node(plausibility_spec(model, m), names[k]), names[k],
-                     fabs(plausibility_parameter(model, m, names[k])), m);
+  for (ParameterRole role = PARAMETER_TENSILE_STRENGTH; role <= PARAMETER_OCTAHEDRAL_STRENGTH; ++role)
+    warn_of_strength(model, plausibility_parameter_node(model, m, role), parameter_role_name(role),
+                     fabs(plausibility_parameter(model, m, role)), m);
 }
 
 /** The same of strengths of bonds, which stand with the failure criterion. @param[in] m  of most of the body */
@@ -175,16 +177,16 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
   const Space space = peridynamics_space(model->spec->peridynamics);
   const bool by_brittleness = space != SPACE_3D && model->domain.lengths && normal_lengths_give(m, NULL);
   const double least = by_brittleness ? 1.63 : 2, enough = by_brittleness ? 1.65 : 3; /* l over the horizon */
-  const double strength = plausibility_parameter(model, m, "tensile strength"), young = material_young(m);
-  if (!region || strcmp(region->type->name, "correspondence") != 0 || !(m->softening_energy > 0) ||
-      !(strength <= young / 20) || !(m->fracture_energy > 0))
+  const double strength = plausibility_parameter(model, m, PARAMETER_TENSILE_STRENGTH), young = material_young(m);
+  if (!region || !region->type->softening_length || !(m->softening_energy > 0) || !(strength <= young / 20) ||
+      !(m->fracture_energy > 0))
     return;
   const double horizon = model->domain.family.horizon;
   const double ratio = young * m->fracture_energy / (strength * strength) / horizon;
   if (!(ratio < least)) return;
   char unit[64];
   units_name(model->units, dimension_find("length"), unit, sizeof unit);
-  plausibility_say(model, section_node(plausibility_spec(model, m), "fracture energy"),
+  plausibility_say(model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
                    "fracture energy: E G_F / f_t^2 of material '%s' is %.2g horizons, so that cracks take more than "
                    "G_F (%s); take a "
                    "horizon of %.2g %s, which is a spacing of %.2g %s, or less",
@@ -198,17 +200,17 @@ static void check_material(breccia_model *model, int k)
   const Material *m = &model->domain.materials[k];
   const MaterialSpec *spec = plausibility_spec(model, m);
   if (!spec) return;
-  const Node *stiff = section_node(spec, "Young modulus");
-  if (stiff == spec->head.node) stiff = section_node(spec, "bulk modulus");
-  if (stiff == spec->head.node) stiff = section_node(spec, "shear modulus");
-  const bool young_given = !isnan(plausibility_parameter(model, m, "Young modulus"));
+  const Node *stiff = plausibility_parameter_node(model, m, PARAMETER_YOUNG_MODULUS);
+  if (stiff == spec->head.node) stiff = plausibility_parameter_node(model, m, PARAMETER_BULK_MODULUS);
+  if (stiff == spec->head.node) stiff = plausibility_parameter_node(model, m, PARAMETER_SHEAR_MODULUS);
+  const bool young_given = !isnan(plausibility_parameter(model, m, PARAMETER_YOUNG_MODULUS));
   bool odd = plausibility_beyond(model, section_node(spec, "density"), "density", "density", m->density, 100, 25000,
                                  "kg/m3", densities, 2, 300, 20000);
   const bool concrete = called_concrete(m); /* from lean mortar to the strongest */
   odd |= plausibility_beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
                              material_young(m), concrete ? 1e9 : 1e4, concrete ? 2e11 : 1e12, "Pa", stiffnesses, 4,
                              concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
-  const double speed = wave_speed(model, m), strength = plausibility_parameter(model, m, "tensile strength");
+  const double speed = wave_speed(model, m), strength = plausibility_parameter(model, m, PARAMETER_TENSILE_STRENGTH);
   if (!odd && !(speed >= 10 && speed <= 10000 * 1.5))
     plausibility_say(
         model, spec->head.node,
@@ -217,14 +219,14 @@ static void check_material(breccia_model *model, int k)
         m->name, speed);
   if (strength > material_young(m) / 20)
     plausibility_say(
-        model, section_node(spec, "tensile strength"),
+        model, plausibility_parameter_node(model, m, PARAMETER_TENSILE_STRENGTH),
         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
         strength / material_young(m), 100 * strength / material_young(m));
   check_strength(model, m);
   check_brittleness(model, m, region_made_of(&model->domain, m));
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
-  check_fracture_energy(model, m, plausibility_parameter(model, m, "fracture energy"),
-                        section_node(spec, "fracture energy"));
+  check_fracture_energy(model, m, plausibility_parameter(model, m, PARAMETER_FRACTURE_ENERGY),
+                        plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY));
   if (failure && !isnan(failure->fracture_energy))
     check_fracture_energy(model, m, failure->fracture_energy, section_node(failure, "fracture energy"));
   const CriticalEnergySpec *energy = critical_energy_spec(model->spec->failure);
@@ -232,7 +234,7 @@ static void check_material(breccia_model *model, int k)
     check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
   const bool controlled = points_on_particles(&model->domain.regions[0].points);
   const bool softens =
-      controlled && m->law->components == 6 && !isnan(plausibility_parameter(model, m, "fracture energy"));
+      controlled && m->law->components == 6 && !isnan(plausibility_parameter(model, m, PARAMETER_FRACTURE_ENERGY));
   if (softens && !(m->softening_energy > 0) && !isfinite(model->domain.failure.limit[k]))
     plausibility_say(
         model, section_node(spec, "model"),
@@ -253,12 +255,12 @@ static void check_locking(breccia_model *model, const Region *region)
   const double most = plain ? 0.451 : 0.481;
   const Domain *d = &model->domain;
   const Space space = peridynamics_space(model->spec->peridynamics);
-  if (strcmp(region->type->name, "ordinary") != 0 || space == SPACE_PLANE_STRESS || space == SPACE_BAR) return;
+  if (!region->type->locks || space == SPACE_PLANE_STRESS || space == SPACE_BAR) return;
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
     const MaterialSpec *spec = plausibility_spec(model, m);
     if (!spec || !region_is_made_of(d, region, m->name) || !(material_poisson(m) > most)) continue;
-    const Node *node = section_node(spec, "Poisson ratio");
+    const Node *node = plausibility_parameter_node(model, m, PARAMETER_POISSON_RATIO);
     plausibility_say(model, node,
                      "material '%s': a body of Poisson ratio %.4g that bends is too stiff in 'ordinary', the more the "
                      "thinner it is (%s); take correspondence or hybrid, which come within 2 %% with 21 rows",
@@ -276,7 +278,7 @@ static void check_control(breccia_model *model, const Region *region)
   const double most = 10;
   const Node *keys = region->keys ? ((const SectionHead *)region->keys)->node : NULL;
   const Node *control = keys ? node_get(keys, "zero-energy control") : NULL;
-  if (!control || control->kind != NODE_MAP || strcmp(region->type->name, "correspondence") != 0) return;
+  if (!control || control->kind != NODE_MAP || !region->type->control) return;
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
     const Node *given = node_get(control, names[k]);
     const double factor = given && given->kind == NODE_SCALAR ? strtod(given->text, NULL) : 0;
@@ -318,16 +320,18 @@ double plausibility_wave_speed(const breccia_model *model)
 /** Adds the effects of a missing dilation or tension cut-off in the deck: both make ground with a cone too strong. */
 static void describe_cone(const breccia_model *model, const Material *m, Text *text)
 {
-  const double degree = acos(-1) / 180, friction = plausibility_parameter(model, m, "friction angle"),
-               slope = plausibility_parameter(model, m, "cone slope");
-  const double tip = isnan(friction) ? plausibility_parameter(model, m, "cone strength") / (3 * slope)
-                                     : plausibility_parameter(model, m, "cohesion") / tan(friction * degree);
-  if (strcmp(m->law->name, "drucker-prager") != 0 || !(friction > 0 || slope > 0)) return;
-  if (isnan(plausibility_parameter(model, m, "dilation angle")) &&
-      isnan(plausibility_parameter(model, m, "dilation slope")))
+  const double degree = acos(-1) / 180, friction = plausibility_parameter(model, m, PARAMETER_FRICTION_ANGLE),
+               slope = plausibility_parameter(model, m, PARAMETER_CONE_SLOPE);
+  const double tip = isnan(friction) ? plausibility_parameter(model, m, PARAMETER_CONE_STRENGTH) / (3 * slope)
+                                     : plausibility_parameter(model, m, PARAMETER_COHESION) / tan(friction * degree);
+  if (law_parameter(m->law, PARAMETER_DILATION_ANGLE) < 0 || law_parameter(m->law, PARAMETER_TENSION_CUT_OFF) < 0 ||
+      !(friction > 0 || slope > 0))
+    return;
+  if (isnan(plausibility_parameter(model, m, PARAMETER_DILATION_ANGLE)) &&
+      isnan(plausibility_parameter(model, m, PARAMETER_DILATION_SLOPE)))
     text_add(text, ", dilates by its friction (without 'dilation %s': confined ground bears too much)",
              isnan(friction) ? "slope" : "angle");
-  if (!isnan(plausibility_parameter(model, m, "tension cut-off"))) return;
+  if (!isnan(plausibility_parameter(model, m, PARAMETER_TENSION_CUT_OFF))) return;
   text_add(text, ", bears a mean tension of ");
   quantity_describe(plausibility_in_si(model, "stress", tip), "Pa", text);
   text_add(text, " (without 'tension cut-off')");
@@ -338,9 +342,10 @@ static void describe_material(const breccia_model *model, int k, Text *text)
   const Domain *d = &model->domain;
   const Material *m = &d->materials[k];
   const double young = plausibility_in_si(model, "stress", material_young(m)), limit = d->failure.limit[k];
-  const double strength = plausibility_in_si(model, "stress", plausibility_parameter(model, m, "tensile strength"));
+  const double strength =
+      plausibility_in_si(model, "stress", plausibility_parameter(model, m, PARAMETER_TENSILE_STRENGTH));
   const double energy =
-      plausibility_in_si(model, "fracture energy", plausibility_parameter(model, m, "fracture energy"));
+      plausibility_in_si(model, "fracture energy", plausibility_parameter(model, m, PARAMETER_FRACTURE_ENERGY));
   const double horizon = plausibility_in_si(model, "length", d->family.horizon);
   text_add(text, "  %s: ", m->name);
   quantity_describe(plausibility_in_si(model, "density", m->density), "kg/m3", text);
@@ -372,11 +377,11 @@ static void describe_material(const breccia_model *model, int k, Text *text)
 static void describe_control(const breccia_model *model, const Region *region, Text *text)
 {
   const Domain *d = &model->domain;
-  if (strcmp(region->type->name, "correspondence") != 0) return;
+  if (!region->type->control) return;
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
     if (m->law->components != 6 || m->softening_energy > 0 || !region_is_made_of(d, region, m->name) ||
-        !correspondence_control_lasts(region->formulation, m))
+        !region->type->control->lasts(region->formulation, m))
       continue;
     text_add(text,
              "  %s: may yield, and zero-energy control keeps its stiffness there: limit loads come out too high (a "
@@ -644,12 +649,13 @@ static const char *ground_step_remedy(const breccia_model *model)
 {
   const Domain *d = &model->domain;
   const Region *region = &d->regions[0];
-  if (strcmp(region->type->name, "correspondence") != 0)
+  const ControlType *control = region->type->control;
+  if (!control)
     return ", or take 'formulation: correspondence' with 'influence: conical' and 'zero-energy control: {silling: 0.2, "
            "fades: yielding}', whose families resist slip lines by their strength alone";
-  if (correspondence_control_lasts(region->formulation, main_material(model)))
+  if (control->lasts(region->formulation, main_material(model)))
     return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical'";
-  if (correspondence_influence_falls(region->formulation)) return "";
+  if (control->influence_falls(region->formulation)) return "";
   return ", or take 'influence: conical', with which control holds a twentieth of the strength on slip lines";
 }
 

@@ -207,10 +207,11 @@ static const Material *material_of(const breccia_model *model, const BarSpec *ba
 /** Stress and stiffness in units that do not belong together: steel yields at strains from 0.0005 (structural) to 0.01 (of tendons). */
 static void check_yield(breccia_model *model, const Material *m)
 {
-  const double least = 1e-4, most = 0.05, strain = plausibility_parameter(model, m, "yield stress") / material_young(m);
+  const double least = 1e-4, most = 0.05,
+               strain = plausibility_parameter(model, m, PARAMETER_YIELD_STRESS) / material_young(m);
   if (!(strain < least || strain > most)) return;
   plausibility_say(
-      model, section_node(plausibility_spec(model, m), "yield stress"),
+      model, plausibility_parameter_node(model, m, PARAMETER_YIELD_STRESS),
       "yield stress: over Young's modulus it makes a strain of %.3g, and steel of bars yields at 0.0005 to "
       "0.01; look at the units of both",
       strain);
@@ -238,7 +239,7 @@ static void check_prestress(breccia_model *model, const Bars *b, const Load *loa
     const BarSpec *bar = b->lines.deck->items[n];
     const Material *m = material_of(model, bar);
     const double stress = material_young(m) * strain[b->lines.first[n]],
-                 yield = plausibility_parameter(model, m, "yield stress");
+                 yield = plausibility_parameter(model, m, PARAMETER_YIELD_STRESS);
     Text words = {0}, most = {0};
     if (!(fabs(stress) > yield)) {
       quantity_describe(plausibility_in_si(model, "stress", fabs(stress * peak)), "Pa", &words);

@@ -152,13 +152,9 @@ static void layers_describe(const Domain *d, const Region *region, const Meeting
 void plausibility_describe_layers(const breccia_model *model, Text *text)
 {
   const Domain *d = &model->domain;
-  static const char *const shifted[] = {"bond-based", "ordinary", "correspondence"};
   for (int r = 0; r < d->region_count; ++r) {
     Meeting farthest = {.ratio = least_ratio};
-    bool shifts = false;
-    for (size_t k = 0; k < sizeof shifted / sizeof *shifted; ++k)
-      shifts |= !strcmp(d->regions[r].type->name, shifted[k]);
-    for (int64_t slice = 0; shifts && slice < d->particles->slices; ++slice)
+    for (int64_t slice = 0; d->regions[r].type->shifts_interfaces && slice < d->particles->slices; ++slice)
       layers_meet(d, &d->regions[r], slice, &farthest);
     if (farthest.ratio > least_ratio) layers_describe(d, &d->regions[r], &farthest, text);
   }

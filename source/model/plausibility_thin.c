@@ -47,7 +47,7 @@ static int thin_wanted(const Domain *d, int32_t place, int32_t other)
   const Region *region = domain_region(d, place);
   const Material *own = &d->materials[d->material[place / SLICE]], *layer = &d->materials[d->material[other / SLICE]];
   const int reach = (int)floor(d->family.horizon / thin_spacing(d, other) * (1 + 1e-9));
-  const bool one_region = domain_region(d, other) == region, links = !strcmp(region->type->name, "micropolar");
+  const bool one_region = domain_region(d, other) == region, links = region->type->bond_damage != NULL;
   if (one_region && links) return reach; /* damage by the law of either end acts on the whole link */
   const bool on_particles = !region->type->on_bonds && !links;
   if (on_particles && !(layer->softening_energy > 0)) return 4 * reach; /* the whole layer yields */

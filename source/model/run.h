@@ -2,7 +2,7 @@
 #ifndef BRECCIA_MODEL_RUN_H
 #define BRECCIA_MODEL_RUN_H
 
-#include "formulation/correspondence.h"
+#include "formulation/formulation.h"
 #include "model/model.h"
 #include "results/result_file.h"
 #include <stdio.h>

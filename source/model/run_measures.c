@@ -18,8 +18,8 @@ YieldedEnergy run_yielded_energy(const Domain *d)
     const int32_t i = p->place_of[n];
     const Region *region = domain_region(d, i);
     YieldedEnergy one;
-    if (strcmp(region->type->name, "correspondence") != 0 || !(d->counted[i] > 0)) continue;
-    correspondence_yielded_energy(region->formulation, i, &one);
+    if (!region->type->control || !(d->counted[i] > 0)) continue;
+    region->type->control->yielded_energy(region->formulation, i, &one);
     sum.stored += one.stored;
     sum.held += one.held;
     sum.lasting += one.lasting;

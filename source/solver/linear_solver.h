@@ -25,6 +25,7 @@ typedef struct LinearForesight {
 typedef struct LinearType LinearType;
 struct LinearType {
   const char *words;         /* what equations are solved by, where the key of the deck does not say it; or NULL */
+  bool any_stiffness;        /* also stiffness that is not symmetric */
   const LinearType *instead; /* where the deck does not say, and K turns out not to suit this one; or NULL */
   /** How well it suits the body: the way with the highest number is taken where the deck does not say; 0: not at all. */
   double (*suits)(const LinearSolver *solver);

@@ -152,7 +152,8 @@ static size_t bytes(const LinearSolver *s)
 
 extern const LinearType direct_linear;
 
-const LinearType residuals_linear = {.instead = &direct_linear,
+const LinearType residuals_linear = {.any_stiffness = true,
+                                     .instead = &direct_linear,
                                      .suits = suits,
                                      .create = create,
                                      .destroy = destroy,

@@ -403,12 +403,11 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (find_change(n, force, accuracy, &linear, &start, error)) return NEWTON_FAILED;
     if (linear.unsuited && !linear.stopped && !linear.indefinite && !n->linear.is_free) {
       if (is_cut(n)) return NEWTON_SINGULAR;
-      const bool minimal = !strcmp(linear_solver_name(&n->linear), "minimal residuals");
       error_add(error, BRECCIA_FAILURE,
                 "equations: '%s' cannot solve these: the stiffness is not symmetric, as where a law flows in another "
                 "direction than its yield surface says, or particles turn in space; take %s'direct', or leave "
                 "'equations' out",
-                linear_solver_name(&n->linear), minimal ? "" : "'minimal residuals' or ");
+                linear_solver_name(&n->linear), n->linear.type->any_stiffness ? "" : "'minimal residuals' or ");
       return NEWTON_FAILED;
     }
     n->products += linear.iterations;

@@ -132,6 +132,18 @@ checks=$((checks + 3))
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"
 
+# Behaviour depends on capabilities of formulations and solvers, and on roles of parameters (source/constitutive/
+# parameter_roles.h), and not on their names: beyond the deck reader and the command no name is compared with a word.
+"$breccia" models | awk '/^[a-z0-9-]+: / {sub(/:.*/, ""); print} /^  [A-Za-z]/ && substr($0, 28, 1) ~ /[a-z1-]/ {name = substr($0, 3, 24); sub(/ +$/, "", name); print name}' |
+  grep -vx length > "$work/names" # also a dimension
+printf '%s\n' explicit static implicit relaxation 'minimal residuals' 'conjugate gradients' direct >> "$work/names"
+[ "$(grep -xE 'hybrid|mazars|fracture energy|Young modulus|compressive yield stress' "$work/names" | sort -u | wc -l)" = 5 ] ||
+  fail "names of formulations, laws and parameters: $(tr '\n' ',' < "$work/names")"
+find "$source/source" -name '*.[ch]' ! -path '*/deck/*' ! -path '*/cli/*' -exec cat {} + | tr '\n' ' ' |
+  grep -oE 'strn?cmp\(([^()]|\([^()]*\))*\)' | grep -oE '"[^"]*"' | tr -d '"' | sort -u | grep -xF -f "$work/names" > "$work/compared" &&
+  fail "a name is compared with a word in source/: $(tr '\n' ',' < "$work/compared")"
+checks=$((checks + 2))
+
 # The factors of bending strength that `check` tells are those of the measured table.
 sed -n 's/^    {"\([a-z-]*\)", "\([a-z-]*\)", \([0-9]*\), {\([0-9.]*\), \([0-9.]*\), \([0-9.]*\)}},$/\1 \2 \3 \4 \5 \6/p' \
   "$source/source/domain/bending_strength.c" > "$work/told"

@@ -303,7 +303,7 @@ static double pushed_footing(const char *fades, double strength, double *before,
   *held = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     YieldedEnergy energy;
-    correspondence_yielded_energy(formulation_of(m), p->place_of[n], &energy);
+    correspondence_control.yielded_energy(formulation_of(m), p->place_of[n], &energy);
     *held += energy.lasting;
   }
   *held /= domain_stored_energy(&m->domain);
