@@ -141,8 +141,8 @@ void bars_note(Bars *b)
       b->lowest[n] = fmin(b->lowest[n], b->stress_held[e]);
       b->highest[n] = fmax(b->highest[n], b->stress_held[e]);
       if (b->young[e] > 0) continue;
-      if (b->yielded[e] < 0 && has_yielded(b, e, fmax(-b->lowest[n], b->highest[n]))) b->yielded[e] = b->points.time;
-      if (b->torn[e] < 0 && is_torn(b, e)) b->torn[e] = b->points.time;
+      if (b->yielded[e] < 0 && has_yielded(b, e, fmax(-b->lowest[n], b->highest[n]))) b->yielded[e] = b->clock->time;
+      if (b->torn[e] < 0 && is_torn(b, e)) b->torn[e] = b->clock->time;
     }
 }
 

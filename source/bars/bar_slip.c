@@ -144,7 +144,7 @@ static double bond_stress(const Bars *b, int n, int64_t k, double *slope)
   *slope = 0;
   if (!(s->surface[k] > 0)) return 0;
   const BondState held = {s->slip_held[k], s->stress_held[k], s->forward[k], s->backward[k]};
-  return bond_law_stress(&s->law[n], &held, s->slip[k], b->points.elastic_stage, slope);
+  return bond_law_stress(&s->law[n], &held, s->slip[k], b->clock->elastic_stage, slope);
 }
 
 /** Residuals of nodes at their slips: the slope of the potential; and stiffnesses of elements (`tangent`) and of bond. Strains and stresses follow. */

@@ -215,6 +215,7 @@ static int make_points(Bars *b, const ForcesParts *parts, Error *error)
 {
   PointsRun *runs = memory_zeroed((size_t)b->specs->count, sizeof *runs, "bars", error);
   PointsSpec spec = {.components = 1,
+                     .clock = parts->clock,
                      .runs = runs,
                      .materials = parts->materials,
                      .material_count = parts->material_count,
@@ -278,6 +279,7 @@ static int create(const void *spec, const ForcesParts *parts, void **forces, Err
   Bars *b = *forces = memory_zeroed(1, sizeof *b, "bars", error);
   if (!b) return BRECCIA_FAILURE;
   b->body = parts->body;
+  b->clock = parts->clock;
   b->materials = parts->materials;
   b->specs = &b->lines.specs;
   if (!bar_lines_create(&b->lines, spec)) return error_add(error, BRECCIA_FAILURE, "out of memory: bars");

@@ -50,7 +50,8 @@ typedef struct Bars {
   BarLines
       lines; /* what a 'bar' is here and in what follows; bars of the deck, which may be several of them, are said to be that */
   const SectionList *specs; /* those of `lines` */
-  const Body *body;         /* borrowed, as the materials */
+  const Body *body;         /* borrowed, as the materials and the clock */
+  const StepClock *clock;
   const Material *materials;
   int64_t *first;   /* [bars + 1] elements of a bar */
   double *bar_area; /* [bars] of all its parallel bars together */

@@ -85,7 +85,7 @@ static void find_received(const Domain *d, Torn *torn)
   const Region *region = domain_region(d, torn->place);
   const Points *points = &region->points;
   StoredEnergy energy;
-  region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
+  region->type->stored_energy(region->formulation, torn->place, d->clock.time_step, &energy);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
     torn->strain[k] = points->strain[k][torn->place];
     torn->stress[k] = points->stress[k][torn->place];
@@ -310,7 +310,7 @@ static void find_left(Domain *d, const Region *region)
     if (domain_region(d, torn->place) != region) continue;
     StoredEnergy energy;
     double strain[6] = {0}, stress[6] = {0};
-    region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
+    region->type->stored_energy(region->formulation, torn->place, d->clock.time_step, &energy);
     for (int k = 0; k < 6 && points_on_particles(points); ++k) {
       strain[k] = points->strain[k][torn->place];
       stress[k] = points->stress[k][torn->place];
@@ -346,7 +346,7 @@ void domain_settle(Domain *d, const Region *region)
 {
   TEAM_SINGLE if (d->torn_count > 0) domain_halve_strains(d);
   find_left(d, region);
-  TEAM_SINGLE if (d->particles->free_growth) domain_tell_strains(d, region->points.time);
+  TEAM_SINGLE if (d->particles->free_growth) domain_tell_strains(d, d->clock.time);
   TEAM_SINGLE
   for (int64_t n = 0; n < d->torn_count; ++n) {
     const double share = d->energy_held > 0 ? d->energy_at_limit / d->energy_held : 1;

@@ -145,7 +145,7 @@ bool domain_laws_in_forces(const Domain *d)
 
 bool domain_in_elastic_stage(const Domain *d)
 {
-  return d->regions[0].points.elastic_stage;
+  return d->clock.elastic_stage;
 }
 
 bool domain_may_soften(const Domain *d)
@@ -166,9 +166,7 @@ bool domain_bonds_may_soften(const Domain *d)
 
 void domain_set_elastic_stage(Domain *d, bool elastic)
 {
-  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;
-  for (int k = 0; k < d->forces.count; ++k)
-    if (forces_points(&d->forces, k)) forces_points(&d->forces, k)->elastic_stage = elastic;
+  d->clock.elastic_stage = elastic;
 }
 
 void domain_mix_tangents(Domain *d, double elastic_weight)
@@ -182,21 +180,13 @@ void domain_tell_time(Domain *d, double time, double time_step)
 {
   domain_tell_strains(d, time);
   domain_tell_strength(d, time);
-  for (int r = 0; r < d->region_count; ++r) {
-    d->regions[r].points.time = time;
-    d->regions[r].points.time_step = time_step;
-  }
-  for (int k = 0; k < d->forces.count; ++k) {
-    Points *points = forces_points(&d->forces, k);
-    if (!points) continue;
-    points->time = time;
-    points->time_step = time_step;
-  }
+  d->clock.time = time;
+  d->clock.time_step = time_step;
 }
 
 double domain_step_begin(const Domain *d)
 {
-  return d->regions[0].points.time - d->regions[0].points.time_step;
+  return d->clock.time - d->clock.time_step;
 }
 
 void domain_commit_points(Domain *d)

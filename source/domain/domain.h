@@ -134,6 +134,7 @@ typedef struct Domain {
   Strains strains;
   /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   uint8_t *gave_up;
+  StepClock clock; /* of the step under way */
   Region *regions;
   int region_count;
   int32_t *region; /* [slices] */

@@ -247,6 +247,7 @@ static int create_forces(Domain *d, const DeckReader *reader, const DomainSpec *
   const ForcesParts parts = {.body = &d->body,
                              .family = &d->family,
                              .space = space,
+                             .clock = &d->clock,
                              .blocks = blocks,
                              .reader = reader,
                              .materials = d->materials,

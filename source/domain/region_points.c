@@ -99,6 +99,7 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   PointsSpec spec = {.components = region->type->components,
                      .on_bonds = region->type->on_bonds,
                      .plane_stress = space == SPACE_PLANE_STRESS,
+                     .clock = &d->clock,
                      .materials = d->materials,
                      .material_count = d->material_count,
                      .may_give_up = may_give_up,

@@ -19,6 +19,7 @@ typedef struct ForcesParts {
   const Body *body;
   const Family *family;
   Space space;
+  const StepClock *clock;    /* borrowed for good */
   const ForcesBlock *blocks; /* [blocks of the body], only while they are made */
   const DeckReader *reader;  /* the same */
   const Material *materials; /* those of the deck */

@@ -246,7 +246,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
 {
   const Fading *f = c->fading;
   const Material *m = points_material(c->points, sweep->first * SLICE);
-  const bool may = fades_in(c, m) && !c->points->elastic_stage, softens = may && m->softening_energy > 0;
+  const bool may = fades_in(c, m) && !c->points->clock->elastic_stage, softens = may && m->softening_energy > 0;
   const bool yields = c->fades == FADES_WITH_YIELDING && c->influence_falls;
   const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {

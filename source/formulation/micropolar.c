@@ -149,7 +149,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 static int64_t find_damage(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
-  if (m->damage && !sweep->linearised_at && !m->points->elastic_stage) m->damage->sweeps->find_tension(m, sweep);
+  if (m->damage && !sweep->linearised_at && !m->points->clock->elastic_stage) m->damage->sweeps->find_tension(m, sweep);
   return -1;
 }
 

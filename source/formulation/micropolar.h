@@ -188,7 +188,7 @@ double micropolar_crack_length(const void *formulation, int block, const double 
 /** Whether damage counts now, and some link of the slice may have any. */
 static inline bool micropolar_is_weak(const Micropolar *m, int64_t slice)
 {
-  return m->damage && m->damage->touched[slice] && !m->points->elastic_stage;
+  return m->damage && m->damage->touched[slice] && !m->points->clock->elastic_stage;
 }
 
 /** Stiffness that is left at a stretch. */

@@ -46,7 +46,7 @@ static void copy_slice(void *context, int64_t slice)
 void micropolar_commit(void *formulation, bool well)
 {
   Commit commit = {formulation, well, !well};
-  if (commit.micropolar->damage && !(well && commit.micropolar->points->elastic_stage))
+  if (commit.micropolar->damage && !(well && commit.micropolar->points->clock->elastic_stage))
     team_each(commit.micropolar->particles->slices, copy_slice, &commit);
 }
 

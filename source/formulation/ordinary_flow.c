@@ -131,7 +131,7 @@ static void yield(const Ordinary *o, double *const *u, int64_t place, const brec
   }
   const double b = o->share[place] > 0 ? o->shear[place] / o->share[place] : 0;
   FlowReturn r = {.factor = 1, .across = before};
-  if (!o->points->elastic_stage)
+  if (!o->points->clock->elastic_stage)
     r = ordinary_yield(o->space, m, deviator->yield_stress, ordinary_elastic_dilatation(o, place), before, b, square);
   /* Plastic strain in the plane is (1 - f)^2 b N^2 / 2 G squared, across it and evenly in the plane 3/2 of p squared. */
   const double grown = r.across - before, kept = 1 - r.factor;
@@ -156,21 +156,21 @@ static void relax(const Ordinary *o, double *const *u, int64_t place, const brec
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   const double share = deviator->relaxing,
-               times = o->points->elastic_stage ? 0 : o->points->time_step / deviator->relaxation_time;
+               times = o->points->clock->elastic_stage ? 0 : o->points->clock->time_step / deviator->relaxation_time;
   const Relaxed relaxed = ordinary_relaxed(times);
   double now;
   flow->returned[place] =
       ordinary_relax(o->space, ordinary_material(o, place), share, times, ordinary_elastic_dilatation(o, place),
                      flow->across[0][place], flow->across_last[0][place], &now);
   flow->across[1][place] = flow->returned[place].across;
-  flow->across_last[1][place] = o->points->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
+  flow->across_last[1][place] = o->points->clock->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(u, place, &bond);
     const double e = ordinary_deviatoric(o, place, &bond, &s), before = flow->last[0][at];
-    flow->last[1][at] = o->points->elastic_stage ? before : e;
+    flow->last[1][at] = o->points->clock->elastic_stage ? before : e;
     flow->shift[1][at] =
         share * (before * relaxed.gone + relaxed.late * (e - before)) + flow->shift[0][at] * (1 - relaxed.gone);
   }

@@ -37,10 +37,12 @@ static int create_runs(Points *points, const PointsSpec *spec, Error *error)
 
 int points_create(Points *points, const PointsSpec *spec, Error *error)
 {
+  static const StepClock still = {.time = 0};
   *points = (Points){.components = spec->components,
                      .plane_stress = spec->plane_stress,
                      .on_bonds = spec->on_bonds,
                      .takes_lateral = spec->takes_lateral,
+                     .clock = spec->clock ? spec->clock : &still,
                      .materials = spec->materials,
                      .material_count = spec->material_count,
                      .run_count = spec->run_count};
@@ -198,9 +200,9 @@ void points_make_batch(breccia_batch *batch, const Points *points, int64_t first
   batch->committed = points->committed + row;
   batch->trial = points->trial + row;
   batch->tangent = points->keeps_tangents ? points_kept_tangent(points, run, first) : NULL;
-  batch->elastic_stage = points->elastic_stage;
-  batch->time = points->time;
-  batch->time_step = points->time_step;
+  batch->elastic_stage = points->clock->elastic_stage;
+  batch->time = points->clock->time;
+  batch->time_step = points->clock->time_step;
   batch->length = isnan(points->length[0]) ? NULL : points->length;
   batch->lateral = points->takes_lateral ? strain[1] : NULL;
   for (int k = 0; k < 6; ++k) {

@@ -20,6 +20,12 @@ typedef struct PointsRun {
   int64_t first, count;
 } PointsRun;
 
+/** Step under way, as laws see it. The domain has one for all points; laws respond elastically in an elastic stage. */
+typedef struct StepClock {
+  double time, time_step; /* at the end of the step, and its length; 0 between two steps */
+  bool elastic_stage;
+} StepClock;
+
 /** Where secants are told in the place of tangents. */
 typedef enum Secants {
   SECANTS_OF_NONE,
@@ -59,8 +65,7 @@ typedef struct Points {
   Secants secants;
   uint8_t
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
-  int elastic_stage;      /* laws respond elastically while it is set */
-  double time, time_step; /* for laws with rates: at the end of the step under way, and its length */
+  const StepClock *clock; /* borrowed */
   double length[BATCH];   /* over which laws spread a fracture energy, alike for all points; NaN: unknown */
   PointServers *servers;  /* NULL: no law is remote */
   double *identity;       /* by which the servers are found again after a restart */
@@ -94,6 +99,7 @@ typedef struct PointsSpec {
   const Material *materials; /* borrowed for good */
   int material_count;
   double *const *strain, *const *stress; /* [6] arrays to share with other points, of six components; NULL: their own */
+  const StepClock *clock;                /* borrowed for good; NULL: time stands at 0 */
   const uint8_t *present;                /* [rows] 0 where a row has no point; NULL: all have one */
   bool may_give_up;                      /* points that cannot be integrated are marked and carry nothing */
   double length;

@@ -43,7 +43,7 @@ void points_take_secants(const Points *points, int64_t first, int count, double 
   const int64_t run = points_run(points, first);
   const Material *m = points_material(points, first);
   double *kept = points_kept_tangent(points, run, first);
-  if (!kept || !(m->softening_energy > 0) || points->elastic_stage) return;
+  if (!kept || !(m->softening_energy > 0) || points->clock->elastic_stage) return;
   const double *elastic = points->elastic_tangent + 36 * points->runs[run].material;
   for (int i = 0; i < count; ++i) {
     double trace = 0, product = 0, elastically = 0, at[6], is[6];

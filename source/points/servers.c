@@ -253,7 +253,7 @@ int points_resume(Points *points, Error *error)
 
 bool points_ask_ahead(const Points *points)
 {
-  return points->servers && !points->elastic_stage && !points->keeps_tangents &&
+  return points->servers && !points->clock->elastic_stage && !points->keeps_tangents &&
          !(points->plane_stress && points->components == 6) && begun(points);
 }
 

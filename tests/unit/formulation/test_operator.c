@@ -413,7 +413,7 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
   Domain *d = &model->domain;
   const Particles *p = d->particles;
   Team *before = team_use(model->team);
-  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.time_step = TIME_STEP;
+  d->clock.time_step = TIME_STEP;
   sever_some(model, poor);
   displace(d, law->strain, 3);
   domain_evaluate(d, NULL);

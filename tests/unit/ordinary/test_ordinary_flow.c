@@ -67,13 +67,13 @@ static void two_points_relax_like_a_standard_linear_solid(void **state)
   const double whole = 2 * 15 * shear / moment * e;
   for (int32_t n = 0; n < 2; ++n) ordinary_of(m)->inverse[p->place_of[n]] = 1e-300;
   p->displacement[0][p->place_of[1]] = e;
-  d->regions[0].points.time_step = 1e-12; /* at once */
+  d->clock.time_step = 1e-12; /* at once */
   for (int k = 0; k <= 12; ++k) {
     compute_forces(m);
     domain_commit_points(d);
     const double wanted = whole * (1 - share + share * exp(-k * step / tau));
     assert_near(p->internal[0][p->place_of[0]], wanted, 1e-9 * whole);
-    d->regions[0].points.time_step = step;
+    d->clock.time_step = step;
   }
   for (int k = 1; k <= 20; ++k) { /* drawn further at a steady rate: what the dashpot lags behind goes to rate x tau */
     p->displacement[0][p->place_of[1]] = e * (1 + k);
@@ -178,7 +178,7 @@ static void evenly_strained_bodies_flow_as_the_law_in_space_does(void **state)
     for (int l = 0; l < 2; ++l) {
       breccia_model *m = flowing_body(laws[l], spaces[k], "ordinary");
       breccia_model *reference = flowing_body(laws[l], spaces[k], "correspondence, strain: small");
-      m->domain.regions[0].points.time_step = reference->domain.regions[0].points.time_step = 0.5;
+      m->domain.clock.time_step = reference->domain.clock.time_step = 0.5;
       for (size_t n = 0; n < sizeof path / sizeof *path; ++n) {
         double e[4], stress[6], wanted[6], energy, same, square = 0;
         for (int c = 0; c < 4; ++c) e[c] = c == 3 && k ? 0 : 2e-8 * path[n][c];
@@ -252,11 +252,11 @@ static void plane_stress_relaxes_by_the_closed_form(void **state)
                end = first / (1 - c); /* of e and v */
   double stress[6], energy;
   breccia_model *m = flowing_body(RELAXING, "plane stress", "ordinary");
-  m->domain.regions[0].points.time_step = 1e-12;
+  m->domain.clock.time_step = 1e-12;
   for (int k = 0; k <= 200; ++k) {
     strain_to(m, (const double[]){theta / 2, theta / 2, 0, 0}, stress, &energy);
     domain_commit_points(&m->domain);
-    m->domain.regions[0].points.time_step = step;
+    m->domain.clock.time_step = step;
     const double v = end * (1 - exp(-(1 - c) * k * step / tau)), e = first + c * v;
     if (k % 40) continue;
     if (!k) assert_near(energy, stress[XX] * theta / 2, 1e-5 * energy);
@@ -265,7 +265,7 @@ static void plane_stress_relaxes_by_the_closed_form(void **state)
   }
   /* Relaxed to the end it is elastic with what is left of the shear modulus. */
   const double left = (1 - share) * shear, relaxed = theta / 2 * 18 * bulk * left / (3 * bulk + 4 * left);
-  m->domain.regions[0].points.time_step = 1e4;
+  m->domain.clock.time_step = 1e4;
   for (int k = 0; k < 2; ++k) {
     strain_to(m, (const double[]){theta / 2, theta / 2, 0, 0}, stress, &energy);
     domain_commit_points(&m->domain);
