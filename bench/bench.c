@@ -16,7 +16,7 @@ enum { MOST_THREADS = 12 }; /* numbers of threads that are tried: 1, 2, 4 ... al
  *  as the text of the sweeps has them on small strains in space; sweeps over all bonds, and numbers that a place's part of the phases reads and writes,
  *  each counted once in each phase; bytes a bond that are no family's (of surroundings, through which scattered correspondence goes, twice: their
  *  lanes without a bond count as operations, too). Of links, the many-surface law and scattered hybrid bonds operations are those that a run of
- *  12³ particles on a lattice carries out a step, by an emulator (valgrind); of hybrid bonds on lattices those of planes, by their code. */
+ *  12³ particles on a lattice carries out a step, by an emulator (valgrind). */
 typedef struct Least {
   double operations, sweeps, numbers, bytes;
 } Least;

@@ -1,6 +1,5 @@
 /* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
- * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), bonds of Hooke's law (hybrid_hooke.c, inside cubic lattices hybrid_planes.c,
- * of which bonds hybrid_planes_setup.c), rows and their members one by one (hybrid_rows.c), single bonds and places
+ * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), bonds of Hooke's law (hybrid_hooke.c), rows and their members one by one (hybrid_rows.c), single bonds and places
  * (hybrid_bonds.c), what breaking bonds take with them (hybrid_breaking.c), and points at interfaces of two materials
  * (hybrid_laminate.c).
  *
@@ -35,7 +34,6 @@ typedef struct HybridGeometry {
   int16_t count;  /* members; 0: it carries nothing */
   int16_t other;  /* lattice vector of the other end */
   int32_t block;  /* which numbers lattice vectors in its own way */
-  bool planar; /* its strain is made of the members that it has inside an endless lattice, and planes go through it */
   bool
       mirrored; /* members 2 n and 2 n + 1 stand opposite each other about the middle, so that their g are too; a last one stands there */
 } HybridGeometry;
@@ -57,9 +55,6 @@ typedef struct HybridLattice {
   int16_t *difference; /* [count][count] (a, b): the vector b - a, or -1 */
   uint8_t *window;     /* [count] number of the lattice row to which it leads */
   int windows;         /* rows */
-  int kinds;           /* of bonds that planes know; 0: all bonds are walked */
-  int8_t *kind;        /* [count] of bonds that planes know (hybrid_planes.h); NULL: all bonds are walked */
-  int32_t *layer; /* [layers + 1] the first slice of each layer of rows, and that behind the last one; with `kind` */
 } HybridLattice;
 
 /** What the points of a stripe's slices exert on the places from `low` to `high`, that one excluded, both multiples of eight. */
@@ -75,24 +70,6 @@ typedef struct HybridHooke {
   double lame, shear;
   double across; /* strain across the plane over the trace of that in it; 0 but in plane stress */
 } HybridHooke;
-
-/* Kinds of bonds in cubic lattices, in the order of `ways` (hybrid_planes_setup.c): along the axes, then these. Planes know nine of a horizon of 1.5 spacings and
- * all of one of 2.015. */
-enum {
-  ACROSS = 3,         /* the first of those across a square */
-  NEAR_KINDS = 9,     /* of the shorter horizon */
-  TWICE = NEAR_KINDS, /* the first of those two spacings long */
-  THROUGH = 12,       /* the first of those through a cube */
-  HYBRID_KINDS = 16,
-  HYBRID_ODD = 255 /* slices that are like no others */
-};
-
-/** What planes ask of a slice, and many slices have in common. */
-typedef struct HybridPlanes {
-  double volume[HYBRID_KINDS][SLICE]; /* of bonds by kinds, lane by lane; 0 of those that planes leave */
-  bool some, leaves;                  /* planes go through some bonds; they leave some that carry something */
-  bool full;                          /* there is a particle in every place */
-} HybridPlanes;
 
 /** Part of one material in a point whose members have two materials: a laminate of layers across a normal
  *  (docs/theory.md 5.8). With the strain E of the bond, the strain of the part is E + sym(a (x) n), where
@@ -112,17 +89,6 @@ typedef struct Hybrid Hybrid;
 /** What bonds along lattices exert, of slices whose laws are all Hooke's (hybrid_hooke.c). */
 typedef void HybridHookeSweep(const Hybrid *hybrid, const Sweep *sweep);
 LANES_CHOICE(HybridHookeSweep, hybrid_hooke)
-
-/** Adds to the sums of a stripe what the bonds exert that planes go through (hybrid_planes.c). */
-/** Numbers the bonds of a block whose lattice planes know, and its layers. */
-int hybrid_planes_create(Hybrid *hybrid, int block, Error *error);
-/** Gives back to walks the blocks in which planes would gain nothing, and marks all slices. */
-void hybrid_planes_choose(Hybrid *hybrid);
-/** Volumes of the bonds of a slice that planes go through, as they are now: of one or of many slices. */
-void hybrid_planes_weigh(const Hybrid *hybrid, int64_t slice, HybridPlanes *planes);
-/** Bonds of a slice have their geometries, or other ones. */
-void hybrid_planes_mark(Hybrid *hybrid, int64_t slice);
-void LANES_NAMED(hybrid_planes)(const Hybrid *hybrid, double *const *displacement, const HybridStripe *stripe);
 
 struct Hybrid {
   const Particles *particles;
@@ -144,13 +110,9 @@ struct Hybrid {
   int32_t hidden[2]; /* two places whose bond counts as broken meanwhile; -1: none */
 
   HybridTable table;
-  HybridLattice *lattice; /* [blocks] */
-  int32_t *group;         /* [owned slots] geometry of all eight bonds, or -1 less the entry in `mixed` */
-  uint8_t *active;        /* [owned slots] bonds that carry something and are not listed */
-  uint8_t *planar;        /* [owned slots] those of them that planes go through; NULL: none are */
-  uint8_t *planar_kind;   /* [slices] which of `planes`, or HYBRID_ODD; with `planar` */
-  HybridPlanes *planes;   /* [plane_kinds] */
-  int plane_kinds;
+  HybridLattice *lattice;  /* [blocks] */
+  int32_t *group;          /* [owned slots] geometry of all eight bonds, or -1 less the entry in `mixed` */
+  uint8_t *active;         /* [owned slots] bonds that carry something and are not listed */
   int32_t (*mixed)[SLICE]; /* geometries; -1: there was never a bond; -2 less the number of a listed row */
   int32_t mixed_count, mixed_room;
   int width;            /* places of a lattice row that the bonds of a slice lead to, at most; a multiple of LANES */

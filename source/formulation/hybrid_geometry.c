@@ -432,7 +432,6 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   h->contact = NULL;
   h->stripes = parts->stripe_count;
   if (!status) status = hybrid_stripes_create(h, parts->stripe, error);
-  if (!status && h->planar) hybrid_planes_choose(h);
   return status;
 }
 

@@ -30,7 +30,6 @@ typedef struct HookeWork {
   int kind;
   const HybridStripe *stripe;
   struct HookeAside *aside;
-  const uint8_t *planar; /* bonds that planes go through, or NULL */
   const HybridHooke *hooke;
   double lame, shear;
   double *sums; /* of lane 0 by lattice vector, [3][room] */
@@ -164,12 +163,6 @@ LANES_INLINE void find_first_stress(const HookeWork *w, const HookeBonds *bonds,
 LANES_INLINE Lanes of_lanes(unsigned bits, Lanes value)
 {
   return bits == (1u << LANES) - 1 ? value : lanes_intact(bits, 0, value);
-}
-
-/** Bonds of a slot that carry something and that planes leave. */
-LANES_INLINE unsigned left_by_planes(const Hybrid *h, const HookeWork *w, int64_t group)
-{
-  return h->active[group] & ~(w->planar ? w->planar[group] : 0u);
 }
 
 LANES_INLINE void add_vector(double *to, Lanes value)
@@ -429,11 +422,11 @@ LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *given, int kin
   const int block = h->particles->block[s->slice];
   const HybridLattice *lattice = &h->lattice[block];
   if (lattice->count >= MANY) line_up(s, lattice->count, &work, &bonds, kind);
-  const bool bundles = lattice->count > FEW || (w->planar && lattice->kind);
+  const bool bundles = lattice->count > FEW;
   bool some = false;
   for (int n = 0; n < s->groups; ++n) {
     const int64_t group = s->first + n;
-    for (unsigned left = left_by_planes(h, w, group); left;) {
+    for (unsigned left = h->active[group]; left;) {
       if (bundles && __builtin_popcount(left) <= ALONE) { /* those of them with the same members are no more */
         bonds.lanes = left;
         left = 0;
@@ -479,12 +472,10 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
     const int block = h->particles->block[slice];
     const HybridLattice *lattice = &h->lattice[block];
     const HybridHooke *hooke = &h->hooke[h->material[slice]];
-    const int planes = w->planar ? h->planar_kind[slice] : HYBRID_ODD;
-    if (planes != HYBRID_ODD && !h->planes[planes].leaves) continue;
-    bool some_left = planes != HYBRID_ODD;
-    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1] && !some_left; ++group)
-      some_left = left_by_planes(h, w, group);
-    if (!some_left || !lattice->count) continue;
+    bool some = false;
+    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1] && !some; ++group)
+      some = h->active[group];
+    if (!some || !lattice->count) continue;
     if (cleared < lattice->count) {
       memset(w->sums - sums_margin(h) + 3 * cleared * w->room, 0,
              sizeof *w->sums * (size_t)(3 * (lattice->count - cleared) * w->room));
@@ -499,7 +490,7 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
     for (int n = 0; n < lattice->count; ++n) s.base[n] = (int32_t)(slice * SLICE); /* where there is no slot */
     find_slice(h, slice, &s);
     bool puts = false;
-    const bool some = exert_slice(&s, w, &puts);
+    some = exert_slice(&s, w, &puts);
     if (puts) put_aside(&s, w);
     if (!some) continue;
     add_to_stripe(&s, stripe, w->sums, w->room);
@@ -533,7 +524,5 @@ void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
     if (sweep->linearised_at) w.at[k] = sweep->linearised_at[k];
   }
   clear_stripe(stripe);
-  if (w.kind != (w.kind | HOOKE_FINITE | HOOKE_LINEAR)) w.planar = h->planar;
-  if (w.planar) LANES_NAMED(hybrid_planes)(h, sweep->displacement, stripe);
   walk_stripe(h, &w);
 }

@@ -132,12 +132,7 @@ int hybrid_lattices_create(Hybrid *h, Error *error)
   h->active = memory_zeroed(groups, 1, "geometries of bonds", error);
   if (!h->lattice || !h->group || !h->active) return BRECCIA_FAILURE;
   for (int block = 0; block < (int)blocks; ++block)
-    if (create_lattice(h, block, error) || (h->hooke && hybrid_planes_create(h, block, error))) return BRECCIA_FAILURE;
-  if (!h->hooke) return BRECCIA_OK;
-  h->planar = memory_zeroed(groups, 1, "geometries of bonds", error);
-  h->planar_kind = memory_zeroed((size_t)h->particles->slices, 1, "geometries of bonds", error);
-  h->planes = memory_zeroed(HYBRID_ODD, sizeof *h->planes, "geometries of bonds", error);
-  if (!h->planar || !h->planar_kind || !h->planes) return BRECCIA_FAILURE;
+    if (create_lattice(h, block, error)) return BRECCIA_FAILURE;
   return BRECCIA_OK;
 }
 
@@ -146,15 +141,10 @@ void hybrid_lattices_destroy(Hybrid *h)
   for (int block = 0; h->lattice && block < h->body->block_count; ++block) {
     free(h->lattice[block].difference);
     free(h->lattice[block].window);
-    free(h->lattice[block].kind);
-    free(h->lattice[block].layer);
   }
   free(h->lattice);
   free(h->group);
   free(h->active);
-  free(h->planar);
-  free(h->planar_kind);
-  free(h->planes);
   free(h->mixed);
   free(h->table.geometry);
   free(h->table.near);
@@ -170,8 +160,7 @@ size_t hybrid_lattices_bytes(const Hybrid *h)
 {
   const size_t slices = (size_t)h->particles->slices, groups = (size_t)h->bonds->owned_first[slices];
   const HybridTable *t = &h->table;
-  const size_t planes = h->planar ? groups + slices + HYBRID_ODD * sizeof *h->planes : 0;
-  return planes + groups * (sizeof *h->group + 1) + (size_t)h->mixed_count * sizeof *h->mixed +
+  return groups * (sizeof *h->group + 1) + (size_t)h->mixed_count * sizeof *h->mixed +
          (size_t)t->count * sizeof *t->geometry + (size_t)t->buckets * sizeof *t->bucket +
          (size_t)t->members * (sizeof *t->near + sizeof *t->key + sizeof *t->g) + hybrid_stripes_bytes(h);
 }
@@ -287,24 +276,6 @@ static bool weigh(const Hybrid *h, Members *m)
   return true;
 }
 
-/** Whether the vectors g of members are those that they have inside an endless lattice, where those that are missing have none: what lies in line with a
- *  bond of one spacing, beyond its ends, counts for nothing. */
-static bool is_planar(const Hybrid *h, const Members *m)
-{
-  const HybridLattice *lattice = &h->lattice[m->block];
-  Members all = {.block = m->block, .other = m->other};
-  for (int n = 0; n < lattice->count; ++n)
-    if (difference(lattice, m->other, n) >= 0) all.key[all.count++] = (uint16_t)n;
-  if (all.count == m->count) return true;
-  if (!weigh(h, &all)) return false;
-  double g[HYBRID_NEAR][3] = {{0}};
-  for (int n = 0; n < m->count; ++n) memcpy(g[m->near[n]], m->g[n], sizeof *g);
-  for (int n = 0; n < all.count; ++n)
-    for (int k = 0; k < 3; ++k)
-      if (fabs(all.g[n][k] - g[all.near[n]][k]) > 1e-13 / h->family->lattices[m->block].spacing) return false;
-  return true;
-}
-
 /** The geometry with these members and this section. @return its number, or -1: there is no memory */
 static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volume)
 {
@@ -339,7 +310,6 @@ static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volum
                            .count = (int16_t)m->count,
                            .other = (int16_t)m->other,
                            .block = m->block,
-                           .planar = m->count && h->lattice[m->block].kind && is_planar(h, m),
                            .mirrored = m->count && m->mirrored};
   if (m->count) {
     memcpy(t->near + t->members, m->near, sizeof *t->near * (size_t)m->count);
@@ -491,13 +461,12 @@ static bool set_group(Hybrid *h, int64_t group, const int32_t geometry[SLICE])
 {
   int32_t whole = -1;
   bool alike = true;
-  uint8_t active = 0, planar = 0;
+  uint8_t active = 0;
   for (int lane = 0; lane < SLICE; ++lane) {
     if (geometry[lane] == NO_BOND) continue;
     if (whole < 0) whole = geometry[lane];
     alike &= geometry[lane] >= 0 && geometry[lane] == whole;
     if (geometry[lane] >= 0 && h->table.geometry[geometry[lane]].count) active |= (uint8_t)(1u << lane);
-    if (geometry[lane] >= 0 && h->table.geometry[geometry[lane]].planar) planar |= (uint8_t)(1u << lane);
   }
   /* Lanes without a bond must not be taken for such with one, once bonds are mended: they have a geometry of their own elsewhere. */
   for (int lane = 0; lane < SLICE; ++lane) alike &= geometry[lane] != NO_BOND;
@@ -514,7 +483,6 @@ static bool set_group(Hybrid *h, int64_t group, const int32_t geometry[SLICE])
   else
     h->group[group] = whole;
   h->active[group] = active;
-  if (h->planar) h->planar[group] = planar;
   return true;
 }
 
@@ -594,7 +562,6 @@ void hybrid_groups_renew(Hybrid *h, int64_t slice)
       const int64_t group = l->owned_first[owner] + (rows[0] - l->first[owner]) / SLICE;
       if (rows[0] < l->first[owner] || group >= l->owned_first[owner + 1]) continue;
       renew_group(h, owner, f->first[owner] + l->owned[group], group);
-      if (h->planar) hybrid_planes_mark(h, owner);
     }
   }
   tidy(h);

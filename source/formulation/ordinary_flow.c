@@ -163,7 +163,8 @@ static void relax(const Ordinary *o, double *const *u, int64_t place, const brec
       ordinary_relax(o->space, ordinary_material(o, place), share, times, ordinary_elastic_dilatation(o, place),
                      flow->across[0][place], flow->across_last[0][place], &now);
   flow->across[1][place] = flow->returned[place].across;
-  flow->across_last[1][place] = o->points->clock->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
+  flow->across_last[1][place] =
+      o->points->clock->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
