@@ -1,6 +1,7 @@
 #include "solver/reactions.h"
 
 #include "loading/constraint.h"
+#include "loading/support.h"
 #include "solver/unknowns.h"
 #include "solver/vectors.h"
 #include <math.h>
@@ -34,10 +35,12 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
 /* ---- several supports that mirror ----
  *
  * Images of different supports exert forces on each other, which are nothing to the body: of each support counts what its images do to particles inside.
- * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where
- * faces are held across.
- * Images in a corner of a held face and a periodic face belong to the held face along all axes, because the support
- * continues beyond the periodic face. */
+ * The force of an image in a corner, behind two or three faces, belongs along each axis to
+ * 1. the face normal to that axis;
+ * 2. else to the faces held in all directions, in equal parts: they continue beyond a plane of symmetry;
+ * 3. else to the faces held across, in equal parts: by symmetry the sum over all images is 0.
+ * A periodic face takes no part beside another face, because the support continues beyond the periodic face. The order of
+ * the loads in the deck does not count. */
 
 /** Returns the margin that contains an image. */
 static const Margin *reactions_margin(const Body *body, int64_t n)
@@ -45,18 +48,43 @@ static const Margin *reactions_margin(const Body *body, int64_t n)
   return &body->margins.items[body->margin_of[n]];
 }
 
-/** Returns the support to which the force on an image belongs along an axis: of the faces beyond which the image lies,
- *  the one normal to that axis, or else the first. A periodic face counts only if all these faces are periodic. */
-static const LoadSpec *support_along(const Body *body, int64_t n, int axis)
+/** Supports to which the force on an image belongs along one axis, in equal parts. */
+typedef struct Owners {
+  int count;
+  const LoadSpec *support[ROTATION];
+} Owners;
+
+enum { OWNER_PERIODIC, OWNER_SLIDES, OWNER_HOLDS, OWNER_NORMAL }; /* ranks of faces along an axis */
+
+static int owners_rank(const Margin *margin, int axis)
 {
-  const Margin *own = reactions_margin(body, n);
-  for (int64_t m = n; own->repeats && body_outside(body, m); m = body->image_of[m])
-    if (!reactions_margin(body, m)->repeats) own = reactions_margin(body, m);
+  if (margin->repeats) return OWNER_PERIODIC;
+  if (margin->axis == axis) return OWNER_NORMAL;
+  return support_slides(margin) ? OWNER_SLIDES : OWNER_HOLDS;
+}
+
+/** Finds the owners of an image along an axis: of the faces beyond which the image lies, those of the highest rank. */
+static Owners owners_along(const Body *body, int64_t n, int axis)
+{
+  Owners owners = {0};
+  int highest = -1;
   for (int64_t m = n; body_outside(body, m); m = body->image_of[m]) {
     const Margin *margin = reactions_margin(body, m);
-    if (margin->axis == axis && margin->repeats == own->repeats) return margin->owner;
+    const int rank = owners_rank(margin, axis);
+    if (rank > highest) owners.count = 0;
+    if (rank >= highest) owners.support[owners.count++] = margin->owner;
+    if (rank > highest) highest = rank;
   }
-  return own->owner;
+  return owners;
+}
+
+/** Returns the part of the force on an image along an axis that belongs to the supports of a name. */
+static double owners_part(const Body *body, int64_t n, int axis, const char *load)
+{
+  const Owners owners = owners_along(body, n, axis);
+  int named = 0;
+  for (int o = 0; o < owners.count; ++o) named += owners.support[o]->name && !strcmp(owners.support[o]->name, load);
+  return (double)named / owners.count;
 }
 
 /** Force on an image of the particles inside to which it has bonds. */
@@ -79,15 +107,11 @@ static void add_images(Wrench *sum, const Domain *d, const char *load)
 {
   for (int64_t n = 0; n < d->particles->count; ++n) {
     if (!body_outside(&d->body, n)) continue;
-    bool counts[3];
-    for (int k = 0; k < 3; ++k) {
-      const LoadSpec *support = support_along(&d->body, n, k);
-      counts[k] = support->name && !strcmp(support->name, load);
-    }
-    if (!counts[0] && !counts[1] && !counts[2]) continue;
-    double pull[3] = {0};
+    double part[3], pull[3] = {0};
+    for (int k = 0; k < 3; ++k) part[k] = owners_part(&d->body, n, k, load);
+    if (part[0] == 0 && part[1] == 0 && part[2] == 0) continue;
     find_pull(d, d->particles->place_of[n], pull);
-    for (int k = 0; k < 3; ++k) pull[k] = counts[k] ? -pull[k] : 0;
+    for (int k = 0; k < 3; ++k) pull[k] *= -part[k];
     add_force(sum, d->particles, d->particles->place_of[n], pull);
   }
 }
@@ -101,9 +125,10 @@ static void add_images_of_each(const Domain *d, const Loading *loading, double (
     double pull[3] = {0};
     find_pull(d, d->particles->place_of[n], pull);
     for (int k = 0; k < 3; ++k) {
-      const LoadSpec *support = support_along(&d->body, n, k);
-      for (int l = 0; l < loading->count; ++l)
-        if (loading->loads[l].spec == support) force[l][k] -= pull[k];
+      const Owners owners = owners_along(&d->body, n, k);
+      for (int o = 0; o < owners.count; ++o)
+        for (int l = 0; l < loading->count; ++l)
+          if (loading->loads[l].spec == owners.support[o]) force[l][k] -= pull[k] / owners.count;
     }
   }
 }

@@ -100,6 +100,68 @@ static void each_of_several_walls_carries_its_own(void **state)
   }
 }
 
+/** Finds the reactions of the loads `held` and `side` of a block in space that is pulled obliquely.
+ *  @param[in] swapped  true: `side` stands before `held` in the deck */
+static void corner_reactions(const char *formulation, const char *held, const char *side, bool swapped,
+                             double force[2][3])
+{
+  char loads[2][120];
+  snprintf(loads[0], sizeof loads[0], "{name: held, on: {face: x-%s}, %s}", *held == 's' ? "" : ", layers: 2", held);
+  snprintf(loads[1], sizeof loads[1], "{name: side, on: {face: y-}, support: {held: %s}}", side);
+  breccia_model *model =
+      model_of(UNITS SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+                                "peridynamics: {formulation: %s, horizon: 2.015 spacings}\n"
+                                "loads: [%s, %s, {on: {face: x+, layers: 1}, traction: [1, 0.7, 0.5]}]\n"
+                                "solve: {static: {increments: 1, residual: 1e-10}}\n",
+               formulation, loads[swapped], loads[!swapped]);
+  step_surely(model, INT64_MAX);
+  Resultant resultants[3];
+  assert_int_equal(resultants_find(&model->solver, resultants, NULL), 0);
+  for (int w = 0; w < 2; ++w) {
+    const Wrench sum = sum_of(model, NULL, w ? "side" : "held", NULL);
+    for (int k = 0; k < 3; ++k) assert_near(resultants[w ^ swapped].now[k], sum.force[k], 1e-12);
+    memcpy(force[w], sum.force, sizeof sum.force);
+  }
+  breccia_model_destroy(&model);
+}
+
+/** Images in the corner of a face held in all directions and a plane of symmetry continue the held face beyond that
+ *  plane: the held face carries all shear along the edge, whichever load the deck names first, as held layers do. */
+static void the_order_of_supports_does_not_move_shear(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"correspondence", "ordinary", "hybrid"};
+  static const char *const held[] = {"support: {held: all}", "displacement: [0, 0, 0]"};
+  const double load[] = {1 * 0.5 * 0.4, 0.7 * 0.5 * 0.4, 0.5 * 0.5 * 0.4};
+  for (int f = 0; f < 3; ++f)
+    for (int h = 0; h < 2; ++h) {
+      double force[2][2][3];
+      for (int swapped = 0; swapped < 2; ++swapped) {
+        corner_reactions(formulations[f], held[h], "across", swapped, force[swapped]);
+        for (int k = 0; k < 3; ++k) assert_near(force[swapped][0][k] + force[swapped][1][k], -load[k], 1e-8);
+        for (int k = 0; k < 3; k += 2) { /* none along the plane of symmetry */
+          assert_near(force[swapped][0][k], -load[k], 1e-8);
+          assert_near(force[swapped][1][k], 0, 1e-8);
+        }
+      }
+      for (int k = 0; k < 3; ++k) assert_near(force[0][1][k], force[1][1][k], 1e-9);
+    }
+}
+
+/** The edge of two faces held in all directions belongs to both alike. */
+static void two_held_faces_share_the_shear_along_their_edge(void **state)
+{
+  (void)state;
+  const double load = 0.5 * 0.5 * 0.4;
+  double force[2][2][3];
+  for (int swapped = 0; swapped < 2; ++swapped)
+    corner_reactions("correspondence", "support: {held: all}", "all", swapped, force[swapped]);
+  for (int w = 0; w < 2; ++w)
+    for (int k = 0; k < 3; ++k) assert_near(force[0][w][k], force[1][w][k], 1e-9);
+  assert_near(force[0][0][2] + force[0][1][2], -load, 1e-8);
+  for (int w = 0; w < 2; ++w) assert_true(force[0][w][2] < 0);
+}
+
 /** The base of a layer between periodic faces carries the shear and the weight of one period, whatever images are in
  *  the corners beside the periodic faces. */
 static void a_base_between_periodic_faces_carries_one_period(void **state)
@@ -311,6 +373,8 @@ int main(void)
       cmocka_unit_test(a_base_carries_the_weight_of_a_block),
       cmocka_unit_test(supports_outside_the_body_carry_it_too),
       cmocka_unit_test(each_of_several_walls_carries_its_own),
+      cmocka_unit_test(the_order_of_supports_does_not_move_shear),
+      cmocka_unit_test(two_held_faces_share_the_shear_along_their_edge),
       cmocka_unit_test(a_base_between_periodic_faces_carries_one_period),
       cmocka_unit_test(what_holds_a_rotation_exerts_a_moment_and_no_force),
       cmocka_unit_test(two_supports_share_the_load_of_a_beam),
