@@ -188,6 +188,10 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
   return &domain->regions[domain->region[place / SLICE]];
 }
 
+/** Returns the largest length over all directions in the plane x, y, and along z in space, over which a crack in a
+ *  material spreads its fracture energy by its normal [length]; 0: the law does not ask for the normal. */
+double domain_longest_crack_length(const Domain *domain, int material);
+
 /** Returns what limits of bonds of a region depend on, without the reader and what is present. */
 LimitsOf domain_limits_of(const Domain *domain, int region, const BondLength *lengths);
 

@@ -52,6 +52,19 @@ static double lengths_of_particles(const Domain *d, const Material *m, Space spa
   return region->type->softening_length(space, d->family.horizon, m->fracture_energy / (2 * m->softening_energy));
 }
 
+double domain_longest_crack_length(const Domain *d, int material)
+{
+  const double quarter = acos(0);
+  double longest = 0;
+  if (!d->lengths || !d->lengths[material].domain) return 0;
+  for (int k = 0; k < 24; ++k) {
+    const double angle = 2 * quarter * k / 24, normal[3] = {cos(angle), sin(angle), 0};
+    longest = fmax(longest, lengths_across(&d->lengths[material], normal));
+  }
+  return d->body.dimensions == 3 ? fmax(longest, lengths_across(&d->lengths[material], (const double[]){0, 0, 1}))
+                                 : longest;
+}
+
 int domain_find_lengths(Domain *d, Space space, Error *error)
 {
   bool known = d->region_count > 0;

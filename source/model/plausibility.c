@@ -195,6 +195,21 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
                    horizon * ratio / enough, unit, model->domain.body.largest_spacing * ratio / enough, unit);
 }
 
+/** Warns where cracks would spread the fracture energy over more than the law can. The law then takes its longest length,
+ *  and cracks take up to the ratio of both lengths times G_F. */
+static void check_spread(breccia_model *model, int k)
+{
+  const Material *m = &model->domain.materials[k];
+  const double wanted = domain_longest_crack_length(&model->domain, k), longest = normal_lengths_longest(m);
+  if (!(wanted > longest * (1 + 1e-3))) return;
+  char unit[64];
+  units_name(model->units, dimension_find("length"), unit, sizeof unit);
+  plausibility_say(model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
+                   "fracture energy: cracks in material '%s' spread it over up to %.3g %s, and %s can spread it over "
+                   "%.3g %s without snapping back: cracks take up to %.2f times G_F; take a finer spacing",
+                   m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
+}
+
 static void check_material(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
@@ -224,6 +239,7 @@ static void check_material(breccia_model *model, int k)
         strength / material_young(m), 100 * strength / material_young(m));
   check_strength(model, m);
   check_brittleness(model, m, region_made_of(&model->domain, m));
+  check_spread(model, k);
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
   check_fracture_energy(model, m, plausibility_parameter(model, m, PARAMETER_FRACTURE_ENERGY),
                         plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY));

@@ -169,6 +169,14 @@ void damage_plasticity_take_lengths(void *constants, const NormalLengths *length
   ((DamagePlasticity *)constants)->lengths = *lengths;
 }
 
+double damage_plasticity_longest(const void *constants)
+{
+  const DamagePlasticity *c = constants;
+  const double m = c->tension_share, steepest = damage_plasticity_steepest(c),
+               whole = c->opening / (steepest + c->peak_strain * m / (2 * (2 - m)));
+  return c->tail < 1 ? fmin(whole, 2 * c->initial_opening / (steepest + c->peak_strain * m)) : whole;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const DamagePlasticity *)constants)->update(constants, batch);

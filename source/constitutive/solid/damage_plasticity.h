@@ -35,6 +35,15 @@ enum {
 
 /** Sets the lengths by crack normal over which points spread the fracture energy. */
 void damage_plasticity_take_lengths(void *constants, const NormalLengths *lengths);
+/** Returns the length [length] over which a point can spread the fracture energy at the most: over a longer one its
+ *  curve in tension would snap back. Points with a longer length take more than the fracture energy. */
+double damage_plasticity_longest(const void *constants);
+
+/** Returns the least area below the curve of tension over plastic strain, over f_t [1]: steeper curves would snap back. */
+static inline double damage_plasticity_steepest(const DamagePlasticity *c)
+{
+  return (1 - c->tension_share + 0.01) * c->peak_strain;
+}
 
 LANES_CHOICE(SolidUpdate, damage_plasticity_update)
 

@@ -39,11 +39,11 @@ typedef struct TensionCurves {
 } TensionCurves;
 
 /** Returns the tension curves of points that spread the fracture energy over a length. The area below a curve over
- *  plastic strain, over f_t, is at least (1 - m + 0.01) f_t / E: steeper curves would snap back.
+ *  plastic strain, over f_t, is at least damage_plasticity_steepest.
  *  @param[in] length  length of each point [length]; 0: the length of the law */
 LANES_INLINE TensionCurves tension_curves_over(const DamagePlasticity *c, Lanes length)
 {
-  const double m = c->tension_share, steepest = (1 - m + 0.01) * c->peak_strain, t = c->tail;
+  const double m = c->tension_share, steepest = damage_plasticity_steepest(c), t = c->tail;
   TensionCurves curves = {lanes_set(c->tension_rate), lanes_set(c->steeper)};
   const LaneMask known = length > lanes_set(0);
   if (!c->lengths.across || !lanes_any(known)) return curves;

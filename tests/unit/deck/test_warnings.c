@@ -17,6 +17,9 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define STRONG(density, young, strength, energy)                                                                       \
   "model: mazars, Poisson ratio: 0.2, density: " density ", Young modulus: " young ", tensile strength: " strength     \
   ", fracture energy: " energy
+#define PLASTIC(strength, more)                                                                                        \
+  "model: damage-plasticity, Poisson ratio: 0.2, density: 2.4, Young modulus: 30 GPa, compressive strength: 40 MPa, "  \
+  "fracture energy: 100 N/m, tensile strength: " strength more
 #define BRITTLE(energy) "failure: {fracture energy: " energy "}\n"
 #define BOUND(energy) "failure: {criterion: critical bond energy, fracture energy: " energy "}\n"
 #define USUAL ELASTIC("1 t/m3", "1 GPa")
@@ -114,6 +117,14 @@ static const struct {
     {"m", STRONG("2.4", "30 GPa", "7.86 MPa", "100 N/m"), "",
      "E G_F / f_t^2 of material 'm' is 1.6 horizons, so that cracks take more than G_F (1.2 of it at 1.4 horizons); "
      "take a horizon of 0.029 m, which is a spacing of 0.0098 m, or less"},
+    /* the longest length of damage-plasticity, 1.79 l, or 2 G_f / G_F l with a tail, beside 0.89 + 0.45 (2 / (l / horizon))^2
+     * times two horizons: l of 1.75 and 1.66 horizons, and with a tail of 3 and 2.7 */
+    {"m", PLASTIC("7.54 MPa", ""), "", NULL},
+    {"m", PLASTIC("7.742 MPa", ""), "",
+     "cracks in material 'm' spread it over up to 0.0931 m, and damage-plasticity can spread it over 0.0894 m without "
+     "snapping back: cracks take up to 1.04 times G_F"},
+    {"m", PLASTIC("5.759 MPa", ", initial fracture energy: 40 N/m"), "", NULL},
+    {"m", PLASTIC("6.07 MPa", ", initial fracture energy: 40 N/m"), "", "can spread it over 0.0645 m without snapping"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "399 N/m"), "", NULL},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "401 N/m"), "", "fracture energy: 401 N/m " MUCH},
