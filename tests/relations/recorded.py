@@ -36,6 +36,14 @@ RECORD = os.path.join(HERE, "recorded.txt")
 NUMBERS = range(900)  # numbers of the decks that --record tries
 DECKS = 300  # number of recorded decks that run
 DIGITS, TOLERANCE = 7, 2e-6
+# Decks in which round-off decides, as whether an increment comes to rest: other versions of libraries or compilers lead
+# to other results. They are compared only where the libraries are those of the record. The kernels of the BLAS follow the
+# processor unless they are fixed.
+ROUND_OFF = (
+    22, 35, 38, 49, 65, 66, 76, 99, 100, 103, 107, 109, 112, 125, 176, 182, 211, 213, 228, 261, 262, 265,
+    306, 343, 394, 431, 447,
+)  # fmt: skip
+KERNELS = {"OPENBLAS_CORETYPE": "Prescott"}
 WORDS, LAST_DIGIT = "numbers of the words", 0.015  # printed numbers have three digits or more
 
 # Keys that no deck of this test has, and the test that has them.
@@ -200,6 +208,7 @@ def record(options, outcomes):
             if lines.setdefault(name_of(line), line) != line:
                 raise SystemExit(f"two lines have one name: '{line}' and '{lines[name_of(line)]}'")
     with open(RECORD, "w") as file:
+        file.write(f"{libraries_of(options)}\n\n")
         file.writelines(f"{name} {line}\n" for name, line in sorted(lines.items(), key=lambda item: item[1]))
         file.write("\n")
         for number, outcome in kept:
@@ -210,15 +219,20 @@ def record(options, outcomes):
     print(f"{ran} decks that run and {len(kept) - ran} that do not are recorded")
 
 
+def libraries_of(options):
+    said = subprocess.run([options.command, "--version"], capture_output=True, text=True, check=True).stdout
+    return next(line for line in said.splitlines() if line.startswith("libraries: "))
+
+
 def recorded():
     with open(RECORD) as file:
-        lines, _, decks = file.read().partition("\n\n")
+        libraries, lines, decks = file.read().split("\n\n")
     lines, found = dict(line.split(" ", 1) for line in lines.splitlines()), {}
     for deck in decks.splitlines():
         number, status, words, names, *figures = deck.split(" ")
         said = [lines[n] for n in words.split(",") if n]
         found[int(number)] = (int(status), said, int(names), [float(figure) for figure in figures])
-    return found
+    return libraries, found
 
 
 def compare(number, outcome, expected):
@@ -306,8 +320,12 @@ def main():
     parser.add_argument("--shown", type=int, default=30)
     options = parser.parse_args()
     options.command, options.reader = os.path.abspath(options.command), os.path.abspath(options.reader)
-    expected = {} if options.record else recorded()
+    os.environ.update(KERNELS)
+    libraries, expected = ("", {}) if options.record else recorded()
     numbers = list(NUMBERS) if options.record else list(expected)
+    if libraries and libraries != libraries_of(options):
+        numbers = [number for number in numbers if number not in ROUND_OFF]
+        print(f"recorded with other {libraries}: {len(expected) - len(numbers)} decks of round-off are left out")
     if options.only is not None:
         numbers = [options.only]
         print(json.dumps(recorded_decks.Deck(options.only).text, indent=1))
@@ -326,7 +344,7 @@ def main():
         found = compare(number, outcome, expected[number])
         messages += found[:3] + ([f"deck {number}: {len(found) - 3} further differences"] if len(found) > 3 else [])
     if options.only is None:
-        ran = [number for number in numbers if expected[number][0] == 0]
+        ran = [number for number in expected if expected[number][0] == 0]
         messages += [f"no recorded deck that runs has '{key}' of '{name}'" for name, key in missing_keys(options, ran)]
     for message in messages[: options.shown]:
         print("FAIL:", message)
