@@ -158,14 +158,14 @@ fuzz:
 	@cmake --build --preset asan-ubsan --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
 
-# The tests that inject faults, by the thousand, for about TORTURE_MINUTES (60); remakes the table of docs/reliability.md.
+# The tests that inject faults, by the thousand, for about TORTURE_MINUTES (60); remakes the table of docs/reliability.md, or of PAGE.
 torture:
 	@sh scripts/setup.sh test
 	@cmake --preset test > /dev/null
 	@cmake --build --preset test --parallel $(cores)
 	@cmake --preset asan-ubsan > /dev/null
 	@cmake --build --preset asan-ubsan --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
-	@python3 -B tests/torture.py docs/reliability.md
+	@python3 -B tests/torture.py $(or $(PAGE),docs/reliability.md)
 
 # Small faults in lines that differ from BASE, one at a time; prints those that no test notices. 20 of them and half an hour, unless told otherwise:
 # `make mutants BASE=HEAD~3 COUNT=5 SEED=2 MINUTES=10 TESTS='test_deck|reuse'`. No part of CI: what survives is to be judged.
