@@ -208,6 +208,14 @@ def compare(failures, label, base, other, system, tolerance):
             )
 
 
+def join_copies(summary):
+    """Replaces the largest compressions of material 'm' and of its copy 'n', which half of the body has, by the larger of
+    the two."""
+    copy = summary.pop("largest_compressions/n", None)
+    if copy and copy.rows[0][0] > summary["largest_compressions/m"].rows[0][0]:
+        summary["largest_compressions/m"] = copy
+
+
 def restate(options, failures, deck, folder, base, generator):
     """Applies all changes of the deck at once and, if results differ, each change by itself to find the cause."""
     axes = space_axes(generator) if deck.dimensions == 3 else generator.choice(PLANE[1:])
@@ -226,11 +234,14 @@ def restate(options, failures, deck, folder, base, generator):
         try:
             write_deck(here, deck.text(restated), system)
             run(options, here, "--threads", "1")
+            found = results_of(options, here)
+            if restated and deck.splits and deck.case["materials"] == "one":
+                join_copies(found["summary"])
             compare(
                 failures,
                 f"{deck.name}, {name} ({units}; {axes})",
                 base,
-                results_of(options, here),
+                found,
                 system,
                 pair_decks.tolerance(deck.case),
             )
