@@ -499,9 +499,9 @@ double material_poisson(const Material *material)
 
 bool material_is_as_stiff(const Material *one, const Material *other)
 {
-  const double rounding = 1e-9;
-  return fabs(one->bulk - other->bulk) <= rounding * fabs(one->bulk) &&
-         fabs(one->shear - other->shear) <= rounding * fabs(one->shear);
+  const double alike = 0.01;
+  return fabs(one->bulk - other->bulk) <= alike * fmin(one->bulk, other->bulk) &&
+         fabs(one->shear - other->shear) <= alike * fmin(one->shear, other->shear);
 }
 
 bool material_is_unlimited(const Material *m)
