@@ -2,6 +2,7 @@
  * closed form. */
 #include "support.h"
 
+#include "base/tensor.h"
 #include "loading/load.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
@@ -233,10 +234,44 @@ static void factors_that_come_to_nothing_are_refused(void **state)
   }
 }
 
+/** Ground that is pulled apart far beyond its tensile strength of 3.2 kPa, divided by 1.6, bears 2 kPa in its middle and
+ * no principal stress above 2 kPa anywhere. */
+static void the_cut_off_of_tension_is_divided(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {" COULOMB "cohesion: 8, friction angle: \"${atan(0.8)}\", tensile strength: 3.2}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [5, 10]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane strain, horizon: 2.015 spacings}\n"
+      "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, {on: {face: y+, layers: 2}, displacement: [0, 6e-4], "
+      "history: {ramp to: 1}}, {strength reduction: 1.6}]\n"
+      "solve: {static: {increments: 3, method: relaxation, residual: 1e-6, relaxation iterations: 20000}}\n"
+      "pictures: []\n");
+  m->threads = 1;
+  while (!solver_is_done(&m->solver)) step_surely(m, 1);
+  const Particles *p = m->domain.particles;
+  double *const *s = m->domain.stress, largest = 0, pull = 0;
+  int middle = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double mean = (s[XX][i] + s[YY][i]) / 2, half = (s[XX][i] - s[YY][i]) / 2;
+    largest = larger_of(largest, mean + hypot(half, s[XY][i]));
+    if (fabs(p->position[1][i] - 0.5) > 0.06) continue;
+    pull += s[YY][i];
+    ++middle;
+  }
+  assert_int_equal(middle, 10);
+  assert_near(largest, 2, 1e-9);
+  assert_near(pull / middle, 2, 0.02);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_column_of_soil_without_tension_stands),
+      cmocka_unit_test(the_cut_off_of_tension_is_divided),
       cmocka_unit_test(factors_that_come_to_nothing_are_refused),
       cmocka_unit_test(divided_strengths_are_those_of_divided_parameters),
       cmocka_unit_test(strengths_of_all_regions_are_divided),
