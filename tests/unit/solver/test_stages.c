@@ -661,9 +661,30 @@ static void what_does_not_fit_is_said(void **state)
   }
 }
 
+/** A body that drifts freely has no forces out of balance, and is not at rest: damping c leaves exp(-2 c t) of its kinetic
+ * energy, and the stage ends at the first look, every 100 steps, at which that is below the share asked for. */
+static void a_body_that_drifts_is_at_rest_once_its_speed_is_damped(void **state)
+{
+  (void)state;
+  const double damping = 2, share = 1e-3;
+  breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n" SOFT_SOLID
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                              "loads: [{initial velocity: {translation: [0.5, 0, 0]}}]\n"
+                              "solve: {explicit: {end time: 10, damping: %g, rest: %g}}\npictures: []\n",
+                              damping, share);
+  step_surely(m, 1);
+  const double look = 100 * m->solver.clock.time_step, wanted = ceil(log(1 / share) / (2 * damping) / look);
+  step_surely(m, INT64_MAX);
+  assert_true(m->solver.records[0].came_to_rest);
+  assert_near((double)m->solver.clock.step, 100 * wanted, 0);
+  assert_near(sums_of(m).moved[0], 0.5 / damping, 0.05 * 0.5 / damping);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_body_that_drifts_is_at_rest_once_its_speed_is_damped),
       cmocka_unit_test(gravity_then_a_load_give_what_each_gives_alone),
       cmocka_unit_test(loads_that_stay_on_do_their_whole_work),
       cmocka_unit_test(histories_and_motions_count_from_the_beginning_of_their_stage),
