@@ -196,9 +196,38 @@ static void the_largest_is_the_same_to_the_bit_after_a_restart(void **state)
   breccia_model_destroy(&model);
 }
 
+/** Where several supports mirror, forces are summed at every tenth explicit step: words say so of explicit stages, and not
+ * of bodies that were only at rest. */
+static void words_say_when_the_largest_is_of_every_tenth_step(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *solve;
+    bool every_tenth;
+  } cases[] = {{"{static: {increments: 2}}", false},
+               {"{explicit: {steps: 20}}", true},
+               {"[{static: {increments: 2}}, {explicit: {steps: 20}}]", true},
+               {"[{explicit: {steps: 20}}, {static: {increments: 2}}]", true}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        UNITS SOFT_SOLID ROD "loads: [{name: left, on: {face: x-}, support: {held: across}}, {name: below, on: {face: "
+                             "z-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}, {name: pull, "
+                             "on: {face: x+}, traction: [1, 0, 0]}]\nsolve: %s\npictures: []\n",
+        cases[k].solve);
+    step_surely(m, INT64_MAX);
+    Text words = {0};
+    run_tell_loads(m, &words);
+    const bool told = strstr(text_words(&words), "the largest (of explicit steps every tenth) and at the end") != NULL;
+    if (told != cases[k].every_tenth) fail_msg("%s: %s", cases[k].solve, text_words(&words));
+    text_free(&words);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(words_say_when_the_largest_is_of_every_tenth_step),
       cmocka_unit_test(supports_bear_the_most_where_loads_are_largest),
       cmocka_unit_test(springs_exert_what_hangs_from_them),
       cmocka_unit_test(waves_push_what_moves_the_bar_and_then_the_dashpots),
