@@ -148,6 +148,12 @@ for k in 0 1 2 3 4 5 6 7 8 9 10; do awk -v k=$k 'BEGIN {e = -0.0005 * k; print e
 fitted() { sed -n "s/^  $1: \([0-9.e+-]*\) .*/\1/p" out; }
 "$breccia" calibrate triaxial.yaml > out 2> errors; equal "calibrate triaxial: status" $? 0
 near "calibrate triaxial: 40 MPa" "$(fitted "Young modulus")" 40000 1e-4
+# measured points lie beside the file that names them, wherever the command is given; other points of that name here are not asked
+mkdir -p beside elsewhere
+cp triaxial.yaml points.csv beside/
+awk -F, '{print $1 "," 2 * $2}' points.csv > elsewhere/points.csv
+(cd elsewhere && "$breccia" calibrate ../beside/triaxial.yaml) > out 2> errors; equal "calibrate from elsewhere: status" $? 0
+near "calibrate from elsewhere: 40 MPa" "$(fitted "Young modulus")" 40000 1e-4
 # the same with total strains, as somebody would write who subtracts nothing
 awk -F, '{print $1 - 0.001 "," $2}' points.csv > moved.csv
 sed 's/steps: 20/steps: 20, strain zero: before consolidation/' triaxial.yaml > moved.yaml
