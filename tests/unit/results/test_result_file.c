@@ -4,6 +4,7 @@
 #include "results/bar_view.h"
 #include "results/picture.h"
 #include <fcntl.h>
+#include <hdf5.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -254,6 +255,63 @@ static void damaged_heaps_are_refused(void **state)
   assert_true(is_whole());
 }
 
+/** Returns the middle of the last chunk of a dataset as its offset in the file. */
+static int64_t middle_of_last_chunk(const char *name, hsize_t *bytes)
+{
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), set = H5Dopen(file, name, H5P_DEFAULT);
+  const hid_t space = H5Dget_space(set), type = H5Dget_type(set);
+  hsize_t chunks = 0, offset[H5S_MAX_RANK], size = 0;
+  haddr_t at = HADDR_UNDEF;
+  unsigned skipped;
+  assert_true(file >= 0 && set >= 0);
+  assert_true(H5Dget_num_chunks(set, space, &chunks) >= 0 && chunks > 0);
+  assert_true(H5Dget_chunk_info(set, space, chunks - 1, offset, &skipped, &at, &size) >= 0 && at != HADDR_UNDEF);
+  *bytes = (hsize_t)H5Sget_simple_extent_npoints(space) * H5Tget_size(type);
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(file);
+  return (int64_t)(at + size / 2);
+}
+
+/** A restart reads large datasets in pieces of 4 MiB: a flipped bit in the last piece of 5.8 MB is found, too. */
+static void damage_behind_the_first_pieces_is_found(void **state)
+{
+  (void)state;
+  char usual[sizeof path], other[] = "/tmp/breccia-pieces-XXXXXX";
+  memcpy(usual, path, sizeof path);
+  assert_non_null(mkdtemp(other));
+  breccia_model *model =
+      model_of("units: {length: m, force: kN, time: s}\n"
+               "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+               "body: {b: {material: m, spacing: 1, shape: {box: {particles: [20, 10, 10]}}}}\n"
+               "loads: [{on: {face: x+, layers: 2}, velocity: [3, 0, 0]}]\nsolve: {explicit: {steps: 80}}\n"
+               "results: {number: 80, fields: [deformation gradient]}\npictures: []\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.size = sizeof run, .folder = other};
+  if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+  snprintf(path, sizeof path, "%s/results.vtkhdf", other);
+  hsize_t bytes;
+  const int64_t at = middle_of_last_chunk("VTKHDF/PointData/deformation gradient", &bytes);
+  const bool before = is_whole();
+  flip(at, 3);
+  const bool damaged = is_whole();
+  flip(at, 3);
+  const bool after = is_whole();
+  static const char *const files[] = {"results.vtkhdf", "results.xdmf", "checkpoint.h5", "summary.json", "deck.yaml"};
+  for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
+    char name[96];
+    snprintf(name, sizeof name, "%s/%s", other, files[k]);
+    unlink(name);
+  }
+  memcpy(path, usual, sizeof path);
+  assert_int_equal(rmdir(other), 0);
+  assert_true(bytes > (hsize_t)5 << 20);
+  assert_true(before && !damaged && after);
+}
+
 /** A picture of another field shows displacements too: damaged ones do not turn into the shape at the start. */
 static void what_was_written_of_the_run_is_read_back(void **state)
 {
@@ -309,9 +367,9 @@ static void a_picture_does_not_leave_out_a_damaged_displacement(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(what_was_written_of_the_run_is_read_back),
-                                     cmocka_unit_test(no_flipped_byte_is_believed),
-                                     cmocka_unit_test(damaged_heaps_are_refused),
-                                     cmocka_unit_test(a_picture_does_not_leave_out_a_damaged_displacement)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_was_written_of_the_run_is_read_back), cmocka_unit_test(no_flipped_byte_is_believed),
+      cmocka_unit_test(damaged_heaps_are_refused), cmocka_unit_test(damage_behind_the_first_pieces_is_found),
+      cmocka_unit_test(a_picture_does_not_leave_out_a_damaged_displacement)};
   return cmocka_run_group_tests(tests, begin, end);
 }
