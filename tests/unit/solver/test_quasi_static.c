@@ -524,6 +524,41 @@ static void a_state_taken_up_goes_on_to_the_same_bits(void **state)
   for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
 }
 
+/** A block on a base under weight along x and down, parted by a cut with Coulomb's friction of 0.4: pushed by 0.3 of what
+ * presses, the block sticks and is steady. Pushed by 0.7 of that, it slides: the body has failed, though friction is all
+ * that dissipates and the period was given. The base then bears 0.4 of what presses. */
+static void a_block_that_slides_has_failed(void **state)
+{
+  (void)state;
+  for (int steep = 0; steep < 2; ++steep) {
+    breccia_model *m = model_of(
+        UNITS
+        "materials: {m: {density: 2.4, model: elastic-1d, Young modulus: 30 MPa}}\n"
+        "peridynamics: {formulation: bond-based}\n"
+        "body:\n  base: {material: m, spacing: 0.01, shape: {box: {particles: [16, 5, 3]}}}\n"
+        "  block: {material: m, spacing: 0.01, shape: {box: {particles: [5, 3, 3], first particle: [0.025, 0.015, "
+        "0.035]}}}\n"
+        "cracks: [{cut: {polygon: [[-1, -1, 0.03], [1, -1, 0.03], [1, 1, 0.03], [-1, 1, 0.03]]}}]\n"
+        "contact: {friction: 0.4}\n"
+        "loads: [{on: {block: base}, displacement: [0, 0, 0]}, {on: {block: block}, gravity: [%d, 0, -50]}]\n"
+        "solve: {explicit: {quasi-static: {period: 5 ms}}}\npictures: []\n",
+        steep ? 35 : 15);
+    const double weight = 45e-6 * 2.4 * 50;
+    assert_true(run(m));
+    const Energy e = solver_energy(&m->solver);
+    assert_near(m->solver.records[0].steady, steep ? STEADY_NOT : STEADY, 0);
+    assert_near(e.dissipated + e.fracture + e.shed, 0, 1e-12);
+    const Particles *p = m->domain.particles;
+    double force[3] = {0};
+    for (int64_t i = 0; i < p->places; ++i)
+      for (int k = 0; k < 3 && p->number[i] >= 0; ++k)
+        if (p->position[2][i] > 0.03) force[k] += p->internal[k][i] * p->volume[i];
+    assert_near(force[2], weight, 1e-3 * weight);
+    assert_near(force[0], steep ? -0.4 * weight : -0.3 * weight, 1e-3 * weight);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -541,6 +576,7 @@ int main(void)
       cmocka_unit_test(what_is_left_of_a_single_vibration),
       cmocka_unit_test(less_damping_lets_a_body_swing),
       cmocka_unit_test(loading_that_is_too_short_tells_nothing),
+      cmocka_unit_test(a_block_that_slides_has_failed),
       cmocka_unit_test(what_makes_no_sense_is_refused),
       cmocka_unit_test(a_state_taken_up_goes_on_to_the_same_bits),
   };
