@@ -196,7 +196,8 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
 }
 
 /** Warns where cracks would spread the fracture energy over more than the law can. The law then takes its longest length,
- *  and cracks take up to the ratio of both lengths times G_F. */
+ *  and points take the ratio of both lengths times G_F; cracks take more where points beside their band soften, too
+ *  (correspondence_softening_length bounds the wanted length). */
 static void check_spread(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
@@ -206,7 +207,7 @@ static void check_spread(breccia_model *model, int k)
   units_name(model->units, dimension_find("length"), unit, sizeof unit);
   plausibility_say(model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
                    "fracture energy: cracks in material '%s' spread it over up to %.3g %s, and %s can spread it over "
-                   "%.3g %s without snapping back: cracks take up to %.2f times G_F; take a finer spacing",
+                   "%.3g %s without snapping back: cracks take %.2f times G_F or more; take a finer spacing",
                    m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
 }
 

@@ -122,7 +122,7 @@ static const struct {
     {"m", PLASTIC("7.54 MPa", ""), "", NULL},
     {"m", PLASTIC("7.742 MPa", ""), "",
      "cracks in material 'm' spread it over up to 0.0931 m, and damage-plasticity can spread it over 0.0894 m without "
-     "snapping back: cracks take up to 1.04 times G_F"},
+     "snapping back: cracks take 1.04 times G_F or more"},
     {"m", PLASTIC("5.759 MPa", ", initial fracture energy: 40 N/m"), "", NULL},
     {"m", PLASTIC("6.07 MPa", ", initial fracture energy: 40 N/m"), "", "can spread it over 0.0645 m without snapping"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
