@@ -210,9 +210,44 @@ static void a_centre_elsewhere_is_refused(void **state)
   }
 }
 
+/** Bonds of a plane body show a Poisson ratio of 1/3. In a uniform strain of that ratio, which is a uniaxial stress, forces
+ * on scattered particles one to two horizons behind the face are not zero, and the traction is in proportion to them.
+ * Nearer to the face its moments are corrected. */
+static void a_traction_balances_the_uniaxial_stress_of_bonds(void **state)
+{
+  (void)state;
+  const double strain = 1e-7, horizon = 3.015, length = 30;
+  const int cells[3] = {30, 14, 1};
+  write_box(cells, 0.3);
+  breccia_model *m = scattered("formulation: bond-based", true,
+                               "loads: [{on: {face: x+}, traction: [1, 0], area: 4.2}]\n", "explicit: {steps: 1}");
+  Particles *p = m->domain.particles;
+  deform_uniformly(m, (double[9]){1 + strain, 0, 0, 0, 1 - strain / 3, 0, 0, 0, 1});
+  compute_forces(m);
+  loading_enter(&m->loading, p, 0, NULL);
+  loading_apply(&m->loading, p, 1);
+  double both = 0, pulled = 0, inner = 0;
+  int count = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double depth = length - p->position[0][i];
+    if (depth < 1.1 * horizon || depth > 1.8 * horizon) continue;
+    const double in = p->volume[i] * p->internal[0][i], out = p->volume[i] * p->external[0][i];
+    both += in * out;
+    pulled += out * out;
+    inner += in * in;
+    ++count;
+  }
+  assert_true(count > 20);
+  assert_true(both < 0);
+  assert_near(both * both / (pulled * inner), 1, 1e-9);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(an_even_stress_reaches_scattered_faces),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_traction_balances_the_uniaxial_stress_of_bonds),
+                                     cmocka_unit_test(an_even_stress_reaches_scattered_faces),
                                      cmocka_unit_test(force_and_moment_are_those_of_the_face),
                                      cmocka_unit_test(water_presses_scattered_walls_with_its_moment),
                                      cmocka_unit_test(a_centre_elsewhere_is_refused)};
