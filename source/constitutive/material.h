@@ -98,8 +98,8 @@ static inline int material_update(const Material *material, const breccia_batch 
 /** Young's modulus and Poisson's ratio of the undamaged material. */
 double material_young(const Material *material);
 double material_poisson(const Material *material);
-/** Returns true if the initial moduli of two materials differ by 1 % at most: a layer between such materials fails at its
- *  strength (material_share_of_bond). */
+/** Returns true if the initial moduli of two materials differ by 1 % at most: a layer between such materials fails at
+ *  its strength (material_share_of_bond). */
 bool material_is_as_stiff(const Material *one, const Material *other);
 /** Returns true if the law is linear or viscoelastic without a failure strain: it neither yields, softens nor
  *  breaks. */

@@ -25,8 +25,8 @@ struct Material;
  *  @return true if the law accepts lengths */
 bool normal_lengths_give(const struct Material *material, const NormalLengths *lengths);
 
-/** Returns the length over which points of a material can spread its fracture energy at the most [length]; INFINITY: the
- *  law has no such bound. */
+/** Returns the length over which points of a material can spread its fracture energy at the most [length]; INFINITY:
+ *  the law has no such bound. */
 double normal_lengths_longest(const struct Material *material);
 
 /** Returns the lengths of points [length]. A point whose damage begins takes l of its first principal strain; all other

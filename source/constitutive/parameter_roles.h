@@ -1,5 +1,5 @@
-/* Parameters of laws that have a role outside of their law, as ROLE(C name, name of the parameter). A law whose parameter
- * has one of these names gets the advice, the checks and the defaults of the role. */
+/* Parameters of laws that have a role outside of their law, as ROLE(C name, name of the parameter). A law whose
+ * parameter has one of these names gets the advice, the checks and the defaults of the role. */
 ROLE(YOUNG_MODULUS, "Young modulus")
 ROLE(POISSON_RATIO, "Poisson ratio")
 ROLE(BULK_MODULUS, "bulk modulus")

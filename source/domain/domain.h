@@ -188,8 +188,8 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
   return &domain->regions[domain->region[place / SLICE]];
 }
 
-/** Returns the largest length over all directions in the plane x, y, and along z in space, over which a crack in a
- *  material spreads its fracture energy by its normal [length]; 0: the law does not ask for the normal. */
+/** Returns the largest length over which a crack in a material spreads its fracture energy by its normal [length], over
+ *  24 normals in the plane x, y, and in space along z; 0: the law does not ask for the normal. */
 double domain_longest_crack_length(const Domain *domain, int material);
 
 /** Returns what limits of bonds of a region depend on, without the reader and what is present. */
@@ -226,9 +226,9 @@ Evaluation domain_present(const Domain *domain);
 void domain_forces(Domain *domain, const Evaluation *of);
 /** The same, called by one thread and done by the team that it uses.
  *  @param[in] of  NULL: domain_present
- *  @return BRECCIA_FAILURE, without a message, of a nonlinear evaluation after which domain_has_forces is false */
+ *  @return BRECCIA_FAILURE, without a message, if domain_has_forces is false afterwards */
 int domain_evaluate(Domain *domain, const Evaluation *of);
-/** Returns true if the last nonlinear evaluation found finite forces and all laws were integrated. */
+/** Returns true if the last nonlinear evaluation found finite forces, and no law or phase has failed in it or since. */
 bool domain_has_forces(const Domain *domain);
 
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked.
@@ -241,7 +241,8 @@ bool domain_take_secants(Domain *domain, Secants of);
 /** Whether linearised steps are secants anyway, of what is damaged. */
 bool domain_has_secants(const Domain *domain);
 
-/** Evaluates forces into the particles' own rows and keeps what linearised steps need of that: tangents of laws among it.
+/** Evaluates forces into the particles' own rows and keeps what linearised steps need of that: tangents of laws among
+ *  it. The return value does not tell of forces that were not found (domain_has_forces).
  *  @param[in] displacement  rows of displacements, which stay as they are until the last linearised step; NULL: those
  *                           held */
 int domain_linearise(Domain *domain, double *const *displacement, Error *error);

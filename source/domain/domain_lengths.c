@@ -54,11 +54,12 @@ static double lengths_of_particles(const Domain *d, const Material *m, Space spa
 
 double domain_longest_crack_length(const Domain *d, int material)
 {
-  const double quarter = acos(0);
+  enum { NORMALS = 24 };
+  const double half_turn = acos(-1);
   double longest = 0;
   if (!d->lengths || !d->lengths[material].domain) return 0;
-  for (int k = 0; k < 24; ++k) {
-    const double angle = 2 * quarter * k / 24, normal[3] = {cos(angle), sin(angle), 0};
+  for (int k = 0; k < NORMALS; ++k) {
+    const double angle = half_turn * k / NORMALS, normal[3] = {cos(angle), sin(angle), 0};
     longest = fmax(longest, lengths_across(&d->lengths[material], normal));
   }
   return d->body.dimensions == 3 ? fmax(longest, lengths_across(&d->lengths[material], (const double[]){0, 0, 1}))

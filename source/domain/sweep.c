@@ -239,6 +239,7 @@ static void run_group(Domain *d, Region *region, Group *group, int64_t batch, co
     run_bonds(d, region, group, batch, purpose, send);
 }
 
+/** Sums the magnitudes of the force components of a batch. */
 static void sum_forces(Domain *d, const Purpose *purpose, int64_t b)
 {
   d->batch_sum[b] = force_magnitude(purpose->of->internal, d->particles->motions, &d->batches[b]);
@@ -365,17 +366,18 @@ void domain_forces(Domain *d, const Evaluation *of)
 {
   TEAM_FOR (b, d->batch_count) d->batch_failed[b] = -1;
   run_all(d, &(Purpose){.of = of});
+  TEAM_SINGLE
+  {
+    if (!of->linearised_at) d->failed_place = -1;
+    for (int64_t b = 0; b < d->batch_count && d->failed_place < 0; ++b) d->failed_place = d->batch_failed[b];
+  }
   if (of->linearised_at) return;
   forces_resist(&d->forces, of->displacement, of->internal);
   TEAM_SINGLE
   {
     d->force_sum = 0;
     d->tensors_are_old = d->leaves_tensors;
-    d->failed_place = -1;
-    for (int64_t b = 0; b < d->batch_count; ++b) {
-      d->force_sum += d->batch_sum[b];
-      if (d->failed_place < 0) d->failed_place = d->batch_failed[b];
-    }
+    for (int64_t b = 0; b < d->batch_count; ++b) d->force_sum += d->batch_sum[b];
     if (forces_stuck(&d->forces, NULL) || *domain_server_problem(d)) d->force_sum = NAN; /* these are no forces */
   }
 }
@@ -383,14 +385,13 @@ void domain_forces(Domain *d, const Evaluation *of)
 /** A sweep of all regions by the team. */
 typedef struct Task {
   Domain *domain;
-  const Evaluation *of;
   Purpose purpose;
 } Task;
 
 static void evaluate(void *context)
 {
   const Task *task = context;
-  domain_forces(task->domain, task->of);
+  domain_forces(task->domain, task->purpose.of);
 }
 
 bool domain_has_forces(const Domain *d)
@@ -401,16 +402,17 @@ bool domain_has_forces(const Domain *d)
 int domain_evaluate(Domain *d, const Evaluation *of)
 {
   const Evaluation present = domain_present(d);
-  Task task = {.domain = d, .of = of ? of : &present};
+  Task task = {d, {.of = of ? of : &present}};
   team_run(evaluate, &task);
-  return task.of->linearised_at || domain_has_forces(d) ? BRECCIA_OK : BRECCIA_FAILURE;
+  return domain_has_forces(d) ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static void sweep_all(void *context)
 {
   const Task *task = context;
+  const Evaluation *of = task->purpose.of;
   run_all(task->domain, &task->purpose);
-  if (!task->purpose.without) forces_resist(&task->domain->forces, task->of->displacement, task->of->internal);
+  if (!task->purpose.without) forces_resist(&task->domain->forces, of->displacement, of->internal);
 }
 
 /** Sweeps at displacements, into the particles' own forces. @param[in] displacement  NULL: those held */
@@ -418,9 +420,8 @@ static void sweep_at(Domain *d, double *const *displacement, Purpose purpose)
 {
   Evaluation at = domain_present(d);
   if (displacement) at.displacement = displacement;
-  Task task = {.domain = d, .of = &at, .purpose = purpose};
-  task.purpose.of = &at;
-  team_run(sweep_all, &task);
+  purpose.of = &at;
+  team_run(sweep_all, &(Task){d, purpose});
 }
 
 void domain_show_states(Domain *d, double *const *displacement)
@@ -468,7 +469,7 @@ int domain_linearise(Domain *d, double *const *displacement, Error *error)
   domain_leave_tensors(d, false);
   for (int r = 0; r < d->region_count; ++r)
     if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
-  domain_evaluate(d, &at); /* callers ask domain_has_forces */
+  domain_evaluate(d, &at);
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     points_keep_tangents(&d->regions[r].points, false, error);

@@ -1,5 +1,5 @@
-/* Copies of the strains and stresses that points keep. Evaluations of forces overwrite these; callers that evaluate forces
- * at other displacements than those of a step copy them before and restore them afterwards. */
+/* Copies of the strains and stresses that points keep. Evaluations of forces overwrite these; callers that evaluate
+ * forces at other displacements than those of a step copy them before and restore them afterwards. */
 #ifndef BRECCIA_DOMAIN_TENSOR_COPY_H
 #define BRECCIA_DOMAIN_TENSOR_COPY_H
 

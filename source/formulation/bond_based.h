@@ -25,7 +25,8 @@ typedef struct BondBased BondBased;
 typedef void BondResist(const BondBased *b, const Sweep *sweep);
 LANES_CHOICE(BondResist, bond_resist_springs)
 
-/** Over bonds with points: stretches of a batch of rows, and forces on the slices of a sweep from pulls (bond_points_sweep.c). */
+/** Over bonds with points: stretches of a batch of rows, and forces on the slices of a sweep from pulls
+ *  (bond_points_sweep.c). */
 typedef struct BondPointSweeps {
   void (*stretch)(const BondBased *b, const Sweep *sweep);
   BondResist *resist;

@@ -172,7 +172,8 @@ typedef struct ControlType {
   bool (*acts)(const void *formulation);
   /** Returns true if control keeps its stiffness where points of a material have lost theirs. */
   bool (*lasts)(const void *formulation, const Material *material);
-  /** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines then. */
+  /** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines
+   *  then. */
   bool (*influence_falls)(const void *formulation);
   /** Energy that the control stores at a place. */
   double (*held)(const void *formulation, int64_t place);
@@ -222,7 +223,8 @@ struct FormulationType {
   /** Material points, numbered for `point`: some of the numbers may have none. */
   int64_t (*point_count)(const void *formulation);
   /** How displacements make the strain of a point and its stress forces, and what springs beside it do. Slow and plain: what sweeps are
-   *  checked against, and what matrices are assembled from. Of the state that was evaluated last; its tangent, if that was linearised.
+   *  checked against, and what matrices are assembled from. Of the state that was evaluated last; its tangent, if that
+   *  was linearised.
    *  @param[in] displacement  [motions] rows of displacements of that state */
   int (*point)(const void *formulation, double *const *displacement, int64_t number, Operator *point, Error *error);
   /** Deformation gradient F at a place, row by row. */

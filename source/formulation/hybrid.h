@@ -1,7 +1,7 @@
 /* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
- * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), bonds of Hooke's law (hybrid_hooke.c), rows and their members one by one (hybrid_rows.c), single bonds and places
- * (hybrid_bonds.c), what breaking bonds take with them (hybrid_breaking.c), and points at interfaces of two materials
- * (hybrid_laminate.c).
+ * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), bonds of Hooke's law (hybrid_hooke.c),
+ * rows and their members one by one (hybrid_rows.c), single bonds and places (hybrid_bonds.c), what breaking bonds take
+ * with them (hybrid_breaking.c), and points at interfaces of two materials (hybrid_laminate.c).
  *
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
  *   G = sum over C in S of u_C (x) g_C,

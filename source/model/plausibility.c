@@ -195,9 +195,9 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
                    horizon * ratio / enough, unit, model->domain.body.largest_spacing * ratio / enough, unit);
 }
 
-/** Warns where cracks would spread the fracture energy over more than the law can. The law then takes its longest length,
- *  and points take the ratio of both lengths times G_F; cracks take more where points beside their band soften, too
- *  (correspondence_softening_length bounds the wanted length). */
+/** Warns where cracks would spread the fracture energy over more than the law can. The law then takes its longest
+ *  length, and points take the ratio of both lengths times G_F; cracks take more where points beside their band soften,
+ *  too (correspondence_softening_length bounds the wanted length). */
 static void check_spread(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];

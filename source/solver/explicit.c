@@ -147,9 +147,9 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
-/** Returns what of the state before a step is copied. Steps of elastic bodies that leave strains out fail only where they
- *  grow beyond all bounds: explicit_step_back then finds the motion before the step. It divides the velocity by 1 - c
- *  dt / 2, which must stay away from zero. */
+/** Returns what of the state before a step is copied. Steps of elastic bodies that leave strains out fail only where
+ *  they grow beyond all bounds: explicit_step_back then finds the motion before the step. It divides the velocity by
+ *  1 - c dt / 2, which must stay away from zero. */
 static Kept explicit_kept(const Explicit *s, bool leaves)
 {
   const bool goes_back = leaves && !(s->viscous.time > 0) && explicit_mass_damping(s) * s->clock->time_step < 1.5;

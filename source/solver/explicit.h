@@ -68,8 +68,8 @@ double explicit_time_after_step(const Explicit *solver);
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
 
-/** Motion before a step that has come to its forces, from that in its middle, where that was not copied: but for roundings, and for velocities of what is
- *  moved, which are the mean of the step. By one thread. */
+/** Motion before a step that has come to its forces, from that in its middle, where that was not copied: but for
+ *  roundings, and for velocities of what is moved, which are the mean of the step. By one thread. */
 void explicit_step_back(Explicit *s);
 
 /** First half of a step of a batch: velocities to the middle of the step, displacements to its end. */

@@ -26,7 +26,8 @@ void stiffness_damping_note(StiffnessDamping *damping, const Particles *particle
  *  @param[in] step  its length */
 void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double step);
 
-/** Subtracts the drag from the internal forces, for loads that look at all forces, and restores them: by all threads. */
+/** Subtracts the drag from the internal forces, for loads that look at all forces, and restores them: by all
+ *  threads. */
 void stiffness_damping_take_off(StiffnessDamping *damping, Domain *domain);
 void stiffness_damping_put_back(StiffnessDamping *damping, Domain *domain);
 

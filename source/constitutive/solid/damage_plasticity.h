@@ -39,7 +39,8 @@ void damage_plasticity_take_lengths(void *constants, const NormalLengths *length
  *  curve in tension would snap back. Points with a longer length take more than the fracture energy. */
 double damage_plasticity_longest(const void *constants);
 
-/** Returns the least area below the curve of tension over plastic strain, over f_t [1]: steeper curves would snap back. */
+/** Returns the least area below the curve of tension over plastic strain, over f_t [1]: steeper curves would snap
+ *  back. */
 static inline double damage_plasticity_steepest(const DamagePlasticity *c)
 {
   return (1 - c->tension_share + 0.01) * c->peak_strain;

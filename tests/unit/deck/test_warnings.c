@@ -117,8 +117,8 @@ static const struct {
     {"m", STRONG("2.4", "30 GPa", "7.86 MPa", "100 N/m"), "",
      "E G_F / f_t^2 of material 'm' is 1.6 horizons, so that cracks take more than G_F (1.2 of it at 1.4 horizons); "
      "take a horizon of 0.029 m, which is a spacing of 0.0098 m, or less"},
-    /* the longest length of damage-plasticity, 1.79 l, or 2 G_f / G_F l with a tail, beside 0.89 + 0.45 (2 / (l / horizon))^2
-     * times two horizons: l of 1.75 and 1.66 horizons, and with a tail of 3 and 2.7 */
+    /* the longest length of damage-plasticity, 1.79 l, or 2 G_f / G_F l with a tail, beside 0.89 + 0.45 (2 / (l /
+     * horizon))^2 times two horizons: l of 1.75 and 1.66 horizons, and with a tail of 3 and 2.7 */
     {"m", PLASTIC("7.54 MPa", ""), "", NULL},
     {"m", PLASTIC("7.742 MPa", ""), "",
      "cracks in material 'm' spread it over up to 0.0931 m, and damage-plasticity can spread it over 0.0894 m without "

@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "base/tensor.h"
+#include "solver/vectors.h"
 #include "support.h"
 
 /* An irregular body: two lattices that do not fit each other, a hole and a cut. */
@@ -524,6 +525,64 @@ static void a_lone_bond_pulls_with_the_micromodulus(void **state)
   }
 }
 
+/* A phase that fails at one place, in the place of one of a formulation. */
+enum { FAILED_PLACE = 40 };
+static int64_t (*whole_phase)(void *formulation, const Sweep *sweep);
+
+static int64_t failing_phase(void *formulation, const Sweep *sweep)
+{
+  whole_phase(formulation, sweep);
+  const bool here = sweep->first <= FAILED_PLACE / SLICE && sweep->last > FAILED_PLACE / SLICE;
+  return here ? FAILED_PLACE : -1;
+}
+
+/** A phase that fails is heard, whichever it is: the evaluation fails with its place, in a linearised step too, and an
+ *  explicit step ends. The next evaluation without a failure is good again. */
+static void a_phase_that_fails_is_heard(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"correspondence", "ordinary", "hybrid", "bond-based"};
+  for (size_t f = 0; f < sizeof formulations / sizeof *formulations; ++f)
+    for (int phase = 0; phase < MOST_PHASES; ++phase) {
+      char keys[64];
+      snprintf(keys, sizeof keys, "formulation: %s", formulations[f]);
+      breccia_model *m = f < 3 ? plane_body("plane strain", keys)
+                               : model_of("materials: {m: {model: elastic-1d, density: 1, Young modulus: 150}}\n"
+                                          "peridynamics: {formulation: bond-based, space: plane strain}\n"
+                                          "body: {b: {material: m, lattice: square, thickness: 0.1, spacing: 0.1, "
+                                          "shape: {box: {particles: [17, 13]}}}}\nsolve: {explicit: {steps: 1}}\n");
+      Domain *d = &m->domain;
+      const FormulationType *whole = d->regions[0].type;
+      FormulationType type = *whole;
+      if (type.phases[phase].run) {
+        Team *before = team_use(m->team);
+        whole_phase = type.phases[phase].run;
+        type.phases[phase].run = failing_phase;
+        assert_int_equal(domain_evaluate(d, NULL), BRECCIA_OK);
+        d->regions[0].type = &type;
+        assert_int_equal(domain_evaluate(d, NULL), BRECCIA_FAILURE);
+        assert_int_equal(d->failed_place, FAILED_PLACE);
+        d->regions[0].type = whole;
+        assert_int_equal(domain_linearise(d, NULL, NULL), 0);
+        assert_true(domain_has_forces(d));
+        double *v[MOTIONS], *change[MOTIONS];
+        assert_true(vectors_make(v, d->particles, "test", NULL) && vectors_make(change, d->particles, "test", NULL));
+        d->regions[0].type = &type;
+        domain_linear_step(d, v, change);
+        assert_false(domain_has_forces(d));
+        vectors_free(v);
+        vectors_free(change);
+        team_use(before);
+        breccia_error *error = breccia_error_create();
+        assert_int_equal(breccia_model_step(m, 1, error), BRECCIA_FAILURE);
+        breccia_error_destroy(&error);
+        d->regions[0].type = whole;
+        assert_int_equal(domain_evaluate(d, NULL), BRECCIA_OK);
+      }
+      breccia_model_destroy(&m);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -543,6 +602,7 @@ int main(void)
       cmocka_unit_test(one_layer_in_space_is_refused_with_advice),
       cmocka_unit_test(flat_families_are_refused),
       cmocka_unit_test(a_lone_bond_pulls_with_the_micromodulus),
+      cmocka_unit_test(a_phase_that_fails_is_heard),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -196,8 +196,8 @@ static void the_largest_is_the_same_to_the_bit_after_a_restart(void **state)
   breccia_model_destroy(&model);
 }
 
-/** Where several supports mirror, forces are summed at every tenth explicit step: words say so of explicit stages, and not
- * of bodies that were only at rest. */
+/** Where several supports mirror, forces are summed at every tenth explicit step: words say so of explicit stages, and
+ * not of bodies that were only at rest. */
 static void words_say_when_the_largest_is_of_every_tenth_step(void **state)
 {
   (void)state;

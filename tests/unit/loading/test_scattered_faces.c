@@ -210,9 +210,9 @@ static void a_centre_elsewhere_is_refused(void **state)
   }
 }
 
-/** Bonds of a plane body show a Poisson ratio of 1/3. In a uniform strain of that ratio, which is a uniaxial stress, forces
- * on scattered particles one to two horizons behind the face are not zero, and the traction is in proportion to them.
- * Nearer to the face its moments are corrected. */
+/** Bonds of a plane body show a Poisson ratio of 1/3. In a uniform strain of that ratio, which is a uniaxial stress,
+ * forces on scattered particles one to two horizons behind the face are not zero, and the traction is in proportion to
+ * them. Nearer to the face its moments are corrected. */
 static void a_traction_balances_the_uniaxial_stress_of_bonds(void **state)
 {
   (void)state;

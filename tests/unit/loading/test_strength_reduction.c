@@ -234,8 +234,8 @@ static void factors_that_come_to_nothing_are_refused(void **state)
   }
 }
 
-/** Ground that is pulled apart far beyond its tensile strength of 3.2 kPa, divided by 1.6, bears 2 kPa in its middle and
- * no principal stress above 2 kPa anywhere. */
+/** Ground that is pulled apart far beyond its tensile strength of 3.2 kPa, divided by 1.6, bears 2 kPa in its middle
+ * and no principal stress above 2 kPa anywhere. */
 static void the_cut_off_of_tension_is_divided(void **state)
 {
   (void)state;

@@ -524,9 +524,9 @@ static void a_state_taken_up_goes_on_to_the_same_bits(void **state)
   for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
 }
 
-/** A block on a base under weight along x and down, parted by a cut with Coulomb's friction of 0.4: pushed by 0.3 of what
- * presses, the block sticks and is steady. Pushed by 0.7 of that, it slides: the body has failed, though friction is all
- * that dissipates and the period was given. The base then bears 0.4 of what presses. */
+/** A block on a base under weight along x and down, parted by a cut with Coulomb's friction of 0.4: pushed by 0.3 of
+ * what presses, the block sticks and is steady. Pushed by 0.7 of that, it slides: the body has failed, though friction
+ * is all that dissipates and the period was given. The base then bears 0.4 of what presses. */
 static void a_block_that_slides_has_failed(void **state)
 {
   (void)state;

@@ -661,8 +661,8 @@ static void what_does_not_fit_is_said(void **state)
   }
 }
 
-/** A body that drifts freely has no forces out of balance, and is not at rest: damping c leaves exp(-2 c t) of its kinetic
- * energy, and the stage ends at the first look, every 100 steps, at which that is below the share asked for. */
+/** A body that drifts freely has no forces out of balance, and is not at rest: damping c leaves exp(-2 c t) of its
+ * kinetic energy, and the stage ends at the first look, every 100 steps, at which that is below the share asked for. */
 static void a_body_that_drifts_is_at_rest_once_its_speed_is_damped(void **state)
 {
   (void)state;
