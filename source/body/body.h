@@ -51,6 +51,12 @@ static inline bool body_outside(const Body *body, int64_t number)
   return body->margin_of && body->margin_of[number] >= 0;
 }
 
+/** Returns true if row k of motion can differ from 0: displacements along the axes of the body, and rotations. */
+static inline bool body_moves_along(const Body *body, int k)
+{
+  return k < body->dimensions || k >= ROTATION;
+}
+
 /** The particle inside of which the particle of a number is an image, or the image of an image; itself, where it stands inside. By numbers. */
 static inline int64_t body_original(const Body *body, int64_t number)
 {

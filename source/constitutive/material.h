@@ -11,7 +11,9 @@ typedef enum ParameterRole {
 #define ROLE(role, name) PARAMETER_##role,
 #include "constitutive/parameter_roles.h"
 #undef ROLE
-  PARAMETER_ROLES
+  PARAMETER_ROLES,
+  PARAMETER_FIRST_STRENGTH = PARAMETER_TENSILE_STRENGTH,
+  PARAMETER_LAST_STRENGTH = PARAMETER_OCTAHEDRAL_STRENGTH
 } ParameterRole;
 
 /** Returns the name of the parameters with a role. */

@@ -7,7 +7,7 @@ ROLE(SHEAR_MODULUS, "shear modulus")
 ROLE(FRACTURE_ENERGY, "fracture energy")
 ROLE(LENGTH, "length")         /* over which a fracture energy is spread; that of the formulation where absent */
 ROLE(DIMENSIONS, "dimensions") /* of the body where absent */
-/* Strengths, compared with the stiffness: */
+/* Strengths, from FIRST_STRENGTH to LAST_STRENGTH of material.h, compared with the stiffness: */
 ROLE(TENSILE_STRENGTH, "tensile strength")
 ROLE(COMPRESSIVE_STRENGTH, "compressive strength")
 ROLE(YIELD_STRESS, "yield stress")

@@ -30,9 +30,6 @@ static const BendingRow bending_rows[] = {
 
 enum { BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows };
 
-/* Number of rows of the measured beams. */
-static const int least_rows = 10, most_rows = 20;
-
 /** Tensile strength of a strip of links, pulled along the rows of its lattice, over E times the `tensile stretch`. */
 typedef struct LinkRow {
   const char *lattice;
@@ -111,15 +108,20 @@ static void bending_describe_block(const Domain *d, int block, const Region *reg
                factor = bending_factor(type->name, m->law_name, rows, depth / length);
   if (isnan(factor) || !isfinite(length)) return;
   const double relative = depth / length;
-  const bool measured = rows > least_rows - 0.5 && rows < most_rows + 0.5 && relative >= bending_depths[0] &&
+  double least = INFINITY, most = 0;
+  for (int k = 0; k < BENDING_ROWS; ++k) {
+    least = fmin(least, bending_rows[k].rows);
+    most = fmax(most, bending_rows[k].rows);
+  }
+  const bool measured = rows > least - 0.5 && rows < most + 0.5 && relative >= bending_depths[0] &&
                         relative <= bending_depths[BENDING_DEPTHS - 1];
   text_add(text,
            "%s: a beam of %.0f rows, %.2g E G_F/f_t^2 deep, carries %.2f times the bending strength of a cohesive "
            "crack of the same f_t, G_F and softening curve (",
            d->body.blocks[block]->head.name, rows, relative, factor);
   if (!measured)
-    text_add(text, "that of the nearest measured beam, of %d to %d rows and %g to %g E G_F/f_t^2 deep; ", least_rows,
-             most_rows, bending_depths[0], bending_depths[BENDING_DEPTHS - 1]);
+    text_add(text, "value of the nearest beam of the measured %g to %g rows and %g to %g E G_F/f_t^2; ", least, most,
+             bending_depths[0], bending_depths[BENDING_DEPTHS - 1]);
   text_add(text, "measured at the default horizon in plane stress on square lattices)\n");
 }
 

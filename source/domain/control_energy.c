@@ -12,7 +12,7 @@ static void control_energy_of_batch(void *context, int64_t b)
     const Region *region = &d->regions[d->region[slice]];
     if (!region->type->control) continue;
     for (int64_t i = slice * SLICE; i < (slice + 1) * SLICE; ++i)
-      if (d->counted[i] > 0) d->batch_sum[b] += region->type->control->held(region->formulation, i);
+      if (d->counted[i] > 0) d->batch_sum[b] += region->type->control->energy(region->formulation, i);
   }
 }
 
@@ -28,6 +28,6 @@ bool domain_is_controlled(const Domain *d)
 {
   bool is = false;
   for (int r = 0; r < d->region_count; ++r)
-    is |= d->regions[r].type->control && d->regions[r].type->control->acts(d->regions[r].formulation);
+    is |= d->regions[r].type->control && d->regions[r].type->control->is_active(d->regions[r].formulation);
   return is;
 }

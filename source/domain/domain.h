@@ -214,17 +214,17 @@ typedef struct Evaluation {
   double *const *internal;      /* written: forces and moments per volume; in a linearised step their changes */
 } Evaluation;
 
-/** Returns the evaluation at the displacements held, into the particles' own forces. */
+/** Returns the evaluation at the particles' displacements that writes their internal forces. */
 Evaluation domain_present(const Domain *domain);
 
-/** Evaluates forces, by all threads. Trial histories, strains and stresses of points, and what particles show their
- *  neighbours, are then of this evaluation; committed histories stay.
+/** Evaluates forces, by all threads. Overwrites trial histories, strains and stresses of points, and what particles
+ *  show their neighbours; committed histories stay.
  *
  *  A linearised step writes the changes K v of internal forces, at the price of one evaluation; forces beside those of
- *  bonds are not in it (domain_change_forces). What particles show their neighbours is of the step afterwards
- *  (domain_show_states). */
+ *  bonds are not in it (domain_change_forces). It leaves what particles show their neighbours at the step; call
+ *  domain_show_states to restore that. */
 void domain_forces(Domain *domain, const Evaluation *of);
-/** The same, called by one thread and done by the team that it uses.
+/** Runs domain_forces on the team in use; called by one thread.
  *  @param[in] of  NULL: domain_present
  *  @return BRECCIA_FAILURE, without a message, if domain_has_forces is false afterwards */
 int domain_evaluate(Domain *domain, const Evaluation *of);

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-/** What a sweep is for. */
+/** Options of a sweep. */
 typedef struct Purpose {
-  const Evaluation *of;
-  bool no_law;      /* stresses are as they should be */
-  bool observes;    /* strains and stresses are written that evaluations leave out */
-  unsigned without; /* phases that write any of these are left out */
+  const Evaluation *of; /* evaluation to perform */
+  bool no_law;          /* stresses are as they should be */
+  bool observes;        /* strains and stresses are written that evaluations leave out */
+  unsigned without;     /* phases that write any of these are left out */
 } Purpose;
 
 /** Not finite if any force of the batch is not. */
@@ -412,7 +412,7 @@ static void sweep_all(void *context)
   const Task *task = context;
   const Evaluation *of = task->purpose.of;
   run_all(task->domain, &task->purpose);
-  if (!task->purpose.without) forces_resist(&task->domain->forces, of->displacement, of->internal);
+  if (!(task->purpose.without & OF_FORCES)) forces_resist(&task->domain->forces, of->displacement, of->internal);
 }
 
 /** Sweeps at displacements, into the particles' own forces. @param[in] displacement  NULL: those held */

@@ -56,8 +56,8 @@ typedef struct ForcesType {
   /** Displacements and bonds are others than they were. */
   void (*find_again)(void *forces);
   /** Adds the forces per volume on particles to `internal`, by all threads; trial state only.
-   *  @param[in] displacement      [3] rows over places, and
-   *  @param[in,out] internal  [3] rows over places */
+   *  @param[in] displacement  [3] rows of displacements over places [length]
+   *  @param[in,out] internal  [3] rows of forces per volume over places */
   void (*resist)(void *forces, double *const *displacement, double *const *internal);
   /* For solvers that iterate, which have no place for kinds without `change`. */
   /** Chooses at the displacements held what the next evaluation would, so that a state can be noted. By one thread. */

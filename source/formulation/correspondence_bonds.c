@@ -27,8 +27,8 @@ void correspondence_axial_spring(const Correspondence *c, double *const u[3], in
   }
 }
 
-/** Its force, less the control that the sweeps have added for this particle.
- *  @param[in] at  NULL, or the displacements at which changes of forces are wanted */
+/** Force state of a lone bond, less the control that the sweeps have added for this particle.
+ *  @param[in] u, at  rows as `displacement` and `linearised_at` of Sweep */
 static void axial_state(const Correspondence *c, double *const *u, double *const *at, int64_t place, const Bond *bond,
                         double t[3])
 {

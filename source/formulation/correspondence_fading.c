@@ -95,10 +95,10 @@ static void fading_yielded_energy(const void *formulation, int64_t place, Yielde
   if (fading_control_lasts(c, m)) energy->lasting = stored.held;
 }
 
-const ControlType correspondence_control = {.acts = fading_control_acts,
-                                            .lasts = fading_control_lasts,
-                                            .influence_falls = fading_influence_falls,
-                                            .held = fading_held,
+const ControlType correspondence_control = {.is_active = fading_control_acts,
+                                            .keeps_stiffness = fading_control_lasts,
+                                            .influence_decreases = fading_influence_falls,
+                                            .energy = fading_held,
                                             .yielded_energy = fading_yielded_energy};
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)

@@ -159,7 +159,7 @@ typedef struct SumsAround {
   int64_t most;      /* in a window: of the phase that writes most; 0: it takes none */
 } SumsAround;
 
-/** Energies [energy] of a place whose point has less than 0.7 of its stiffness left, as a secant; else zeros. */
+/** Energies [energy] of a place whose secant stiffness is below 0.7 of the initial one; else zeros. */
 typedef struct YieldedEnergy {
   double stored;  /* by law and control */
   double held;    /* of that, by the control of zero-energy modes */
@@ -169,14 +169,14 @@ typedef struct YieldedEnergy {
 /** Control of zero-energy modes. */
 typedef struct ControlType {
   /** Returns true if the formulation of the deck has a control. */
-  bool (*acts)(const void *formulation);
+  bool (*is_active)(const void *formulation);
   /** Returns true if control keeps its stiffness where points of a material have lost theirs. */
-  bool (*lasts)(const void *formulation, const Material *material);
+  bool (*keeps_stiffness)(const void *formulation, const Material *material);
   /** Returns true if the influence of bonds decreases with their length. Fading control is bounded on slip lines
    *  then. */
-  bool (*influence_falls)(const void *formulation);
+  bool (*influence_decreases)(const void *formulation);
   /** Energy that the control stores at a place. */
-  double (*held)(const void *formulation, int64_t place);
+  double (*energy)(const void *formulation, int64_t place);
   void (*yielded_energy)(const void *formulation, int64_t place, YieldedEnergy *energy);
 } ControlType;
 

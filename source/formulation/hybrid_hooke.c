@@ -472,10 +472,10 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
     const int block = h->particles->block[slice];
     const HybridLattice *lattice = &h->lattice[block];
     const HybridHooke *hooke = &h->hooke[h->material[slice]];
-    bool some = false;
-    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1] && !some; ++group)
-      some = h->active[group];
-    if (!some || !lattice->count) continue;
+    bool active = false;
+    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1] && !active; ++group)
+      active = h->active[group];
+    if (!active || !lattice->count) continue;
     if (cleared < lattice->count) {
       memset(w->sums - sums_margin(h) + 3 * cleared * w->room, 0,
              sizeof *w->sums * (size_t)(3 * (lattice->count - cleared) * w->room));
@@ -490,9 +490,9 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
     for (int n = 0; n < lattice->count; ++n) s.base[n] = (int32_t)(slice * SLICE); /* where there is no slot */
     find_slice(h, slice, &s);
     bool puts = false;
-    some = exert_slice(&s, w, &puts);
+    const bool exerts = exert_slice(&s, w, &puts);
     if (puts) put_aside(&s, w);
-    if (!some) continue;
+    if (!exerts) continue;
     add_to_stripe(&s, stripe, w->sums, w->room);
     for (int n = 0; n < 3 * lattice->count; ++n)
       for (int lane = 0; lane < SLICE; lane += LANES) lanes_store(w->sums + n * w->room + lane, lanes_set(0));

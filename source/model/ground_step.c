@@ -70,8 +70,8 @@ static bool ground_step_slips_freely(const Domain *d)
       const Region *region = &d->regions[r];
       if (!region_is_made_of(d, region, d->materials[m].name)) continue;
       const ControlType *control = region->type->control;
-      freely &= control && control->influence_falls(region->formulation) &&
-                !control->lasts(region->formulation, &d->materials[m]);
+      freely &= control && control->influence_decreases(region->formulation) &&
+                !control->keeps_stiffness(region->formulation, &d->materials[m]);
     }
   return freely;
 }

@@ -520,7 +520,7 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   model->solver.interrupted = NULL;
   domain_leave_tensors(&model->domain, false);
   if (model->domain.tensors_are_old && domain_observe(&model->domain, error) && !status) status = BRECCIA_FAILURE;
-  solver_put_arrays_back(&model->solver);
+  domain_put_stresses_back(&model->domain);
   if (model_leave_motion(model, error) && !status) status = BRECCIA_FAILURE;
   return model_leave(&entry, status, error);
 }

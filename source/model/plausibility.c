@@ -147,7 +147,7 @@ static void warn_of_strength(breccia_model *model, const Node *node, const char 
 
 static void check_strength(breccia_model *model, const Material *m)
 {
-  for (ParameterRole role = PARAMETER_TENSILE_STRENGTH; role <= PARAMETER_OCTAHEDRAL_STRENGTH; ++role)
+  for (ParameterRole role = PARAMETER_FIRST_STRENGTH; role <= PARAMETER_LAST_STRENGTH; ++role)
     warn_of_strength(model, plausibility_parameter_node(model, m, role), parameter_role_name(role),
                      fabs(plausibility_parameter(model, m, role)), m);
 }
@@ -205,10 +205,11 @@ static void check_spread(breccia_model *model, int k)
   if (!(wanted > longest * (1 + 1e-3))) return;
   char unit[64];
   units_name(model->units, dimension_find("length"), unit, sizeof unit);
-  plausibility_say(model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
-                   "fracture energy: cracks in material '%s' spread it over up to %.3g %s, and %s can spread it over "
-                   "%.3g %s without snapping back: cracks take %.2f times G_F or more; take a finer spacing",
-                   m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
+  plausibility_say(
+      model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
+      "fracture energy: a crack in material '%s' is up to %.3g %s wide, and %s allows %.3g %s at the most, "
+      "beyond which its curve would snap back: cracks take %.2f times G_F or more; take a finer spacing",
+      m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
 }
 
 static void check_material(breccia_model *model, int k)
@@ -398,7 +399,7 @@ static void describe_control(const breccia_model *model, const Region *region, T
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
     if (m->law->components != 6 || m->softening_energy > 0 || !region_is_made_of(d, region, m->name) ||
-        !region->type->control->lasts(region->formulation, m))
+        !region->type->control->keeps_stiffness(region->formulation, m))
       continue;
     text_add(text,
              "  %s: may yield, and zero-energy control keeps its stiffness there: limit loads come out too high (a "
@@ -670,9 +671,9 @@ static const char *ground_step_remedy(const breccia_model *model)
   if (!control)
     return ", or take 'formulation: correspondence' with 'influence: conical' and 'zero-energy control: {silling: 0.2, "
            "fades: yielding}', whose families resist slip lines by their strength alone";
-  if (control->lasts(region->formulation, main_material(model)))
+  if (control->keeps_stiffness(region->formulation, main_material(model)))
     return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical'";
-  if (control->influence_falls(region->formulation)) return "";
+  if (control->influence_decreases(region->formulation)) return "";
   return ", or take 'influence: conical', with which control holds a twentieth of the strength on slip lines";
 }
 

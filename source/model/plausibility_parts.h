@@ -16,7 +16,7 @@ double plausibility_in_si(const breccia_model *model, const char *dimension, dou
 
 /** What a deck says of a material; NULL: it is not of the deck. */
 const MaterialSpec *plausibility_spec(const breccia_model *model, const Material *material);
-/** A parameter of a material's law, in the deck's units; NaN if it has none of that name or was not given it. */
+/** A parameter of a material's law, in the deck's units; NaN if it has none of that role, or none is given. */
 double plausibility_parameter(const breccia_model *model, const Material *material, ParameterRole role);
 /** Returns the node of the parameter of a material's law that has a role; the node of the material if it is absent. */
 const Node *plausibility_parameter_node(const breccia_model *model, const Material *material, ParameterRole role);

@@ -56,7 +56,7 @@ static int thin_wanted(const Domain *d, int32_t place, int32_t other)
 }
 
 /** Returns the square of the distance of a particle from a point [length^2]. */
-static double thin_distance(const Domain *d, int32_t place, const double point[3])
+static double thin_square(const Domain *d, int32_t place, const double point[3])
 {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
@@ -66,10 +66,10 @@ static double thin_distance(const Domain *d, int32_t place, const double point[3
   return sum;
 }
 
-/** Returns the index of the block without a shape, read from a file, to which the particle nearest to a point belongs.
+/** Returns the index of the block of the particle nearest to a point, if that block was read from a file.
  *  @param[in,out] near  local index of a particle within about a spacing of the point; the nearest particle, found by
  *                       descent through families
- *  @return -1: no such block within a spacing */
+ *  @return -1: another block, or no particle within a spacing */
 static int thin_block_of_particles(const Domain *d, const double point[3], int32_t *near)
 {
   const Family *f = &d->family;
@@ -80,13 +80,13 @@ static int thin_block_of_particles(const Domain *d, const double point[3], int32
       if (!(f->intact[slot] >> from % SLICE & 1)) continue;
       const int32_t other = family_bond(f, slice, slot, from % SLICE).neighbour;
       if (!body_outside(&d->body, d->particles->number[other]) &&
-          thin_distance(d, other, point) < thin_distance(d, *near, point))
+          thin_square(d, other, point) < thin_square(d, *near, point))
         *near = other;
     }
   }
   const double spacing = thin_spacing(d, *near);
   const int block = d->particles->block[*near / SLICE];
-  return !d->body.blocks[block]->shape && thin_distance(d, *near, point) < spacing * spacing ? block : -1;
+  return !d->body.blocks[block]->shape && thin_square(d, *near, point) < spacing * spacing ? block : -1;
 }
 
 /** Returns the index of the block that contains a point; -1: none.

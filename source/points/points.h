@@ -22,7 +22,7 @@ typedef struct PointsRun {
 
 /** Step under way, as laws see it. The domain has one for all points; laws respond elastically in an elastic stage. */
 typedef struct StepClock {
-  double time, time_step; /* at the end of the step, and its length; 0 between two steps */
+  double time, time_step; /* time at its end; its length, 0 between two steps */
   bool elastic_stage;
 } StepClock;
 
@@ -99,7 +99,7 @@ typedef struct PointsSpec {
   const Material *materials; /* borrowed for good */
   int material_count;
   double *const *strain, *const *stress; /* [6] arrays to share with other points, of six components; NULL: their own */
-  const StepClock *clock;                /* borrowed for good; NULL: time stands at 0 */
+  const StepClock *clock;                /* borrowed for good; NULL: a constant clock at time 0 */
   const uint8_t *present;                /* [rows] 0 where a row has no point; NULL: all have one */
   bool may_give_up;                      /* points that cannot be integrated are marked and carry nothing */
   double length;

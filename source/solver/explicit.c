@@ -130,7 +130,7 @@ static int create(Solver *run, Error *error)
                   .force = run->force};
   /* Nothing leads out of a plane, or off a line: loads that would are refused. */
   for (int k = 0; k < d->particles->motions; ++k)
-    if (k < d->body.dimensions || k >= ROTATION) s->rows[s->row_count++] = k;
+    if (body_moves_along(&d->body, k)) s->rows[s->row_count++] = k;
   ledger_begin(&run->ledger, d);
   int failed = 0;
   for (int k = 0; k < d->particles->motions; ++k)
@@ -147,9 +147,9 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
-/** Returns what of the state before a step is copied. Steps of elastic bodies that leave strains out fail only where
- *  they grow beyond all bounds: explicit_step_back then finds the motion before the step. It divides the velocity by
- *  1 - c dt / 2, which must stay away from zero. */
+/** Returns which rows a step copies before it begins. Steps of elastic bodies that leave strains out fail only where
+ *  they grow beyond all bounds, and explicit_step_back then reconstructs the motion, so that its rows are not copied.
+ *  For this, 1 - c dt / 2 must stay away from zero, and there must be no drag of stiffness, which it does not know. */
 static Kept explicit_kept(const Explicit *s, bool leaves)
 {
   const bool goes_back = leaves && !(s->viscous.time > 0) && explicit_mass_damping(s) * s->clock->time_step < 1.5;
@@ -447,7 +447,7 @@ static int advance(Solver *run, Text *warning, Error *error)
                                          .lag = s->clock->time_step / 2,
                                          .damping = explicit_mass_damping(s)});
   if (s->viscous.time > 0) {
-    stiffness_damping_note(&s->viscous, s->domain->particles);
+    stiffness_damping_note(&s->viscous, s->domain);
     team_run(move, s);
     find_drag(s);
     team_run(answer, s);

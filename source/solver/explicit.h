@@ -39,8 +39,8 @@ typedef struct Explicit {
   } plan;
   double fixed; /* the step that the deck says, or the program's where the deck counts steps; NaN: free to follow */
   int64_t broken_at_estimate, step_at_estimate; /* when the stable step was found */
-  StateCopy before;                             /* what the step under way tries, as it was */
-  Kept kept;                                    /* what of it is copied */
+  StateCopy before;                             /* rows as they were before the step under way */
+  Kept kept;                                    /* which rows `before` holds */
   struct Motion {                               /* of each constraint in the step under way */
     double target;                              /* displacement at its end */
     double moved;                               /* in the step */
@@ -68,7 +68,7 @@ double explicit_time_after_step(const Explicit *solver);
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
 
-/** Motion before a step that has come to its forces, from that in its middle, where that was not copied: but for
+/** Motion before a step that has come to its forces, from that in its middle, where its rows were not copied: but for
  *  roundings, and for velocities of what is moved, which are the mean of the step. By one thread. */
 void explicit_step_back(Explicit *s);
 

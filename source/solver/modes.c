@@ -470,7 +470,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
               .wanted = count,
               .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};
   for (int k = 0; k < d->particles->motions; ++k)
-    if (k >= ROTATION || k < d->body.dimensions) s.row[s.rows++] = k;
+    if (body_moves_along(&d->body, k)) s.row[s.rows++] = k;
   const double size = (double)s.rows * (double)d->particles->count;
   s.size = (a_int)size;
   const int64_t unknowns = unknowns_count(&s.linear.unknowns, error);

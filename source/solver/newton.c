@@ -205,7 +205,7 @@ int newton_prepare(Newton *n, Error *error)
   }
   l->stiffness_share = n->factored_share;
   l->mass_factor = n->factored_mass;
-  int status = domain_linearise(n->domain, n->change, error); /* without displacements */
+  int status = domain_linearise(n->domain, n->change, error); /* at zero displacements */
   if (!status) status = linear_solver_prepare(l, error);
   l->stiffness_share = share;
   l->mass_factor = mass;

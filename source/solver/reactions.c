@@ -39,8 +39,8 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
  * 1. the face normal to that axis;
  * 2. else to the faces held in all directions, in equal parts: they continue beyond a plane of symmetry;
  * 3. else to the faces held across, in equal parts: by symmetry the sum over all images is 0.
- * A periodic face takes no part beside another face, because the support continues beyond the periodic face. The order
- * of the loads in the deck does not count. */
+ * A periodic face owns a force only if all faces of the image are periodic, because supports continue beyond periodic
+ * faces. The result does not depend on the order of the loads. */
 
 /** Returns the margin that contains an image. */
 static const Margin *reactions_margin(const Body *body, int64_t n)

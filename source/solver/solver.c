@@ -287,7 +287,7 @@ static void list_kept(Solver *s, Kept kept, StateList *list)
   solver_state(s, list);
   for (int n = 0; n < list->count && kept != KEPT_ALL; ++n)
     for (int k = 0; k < p->motions; ++k) {
-      const bool moves = k < s->domain->body.dimensions || k >= ROTATION;
+      const bool moves = body_moves_along(&s->domain->body, k);
       if ((kept == KEPT_BUT_MOTION || !moves) &&
           (list->rows[n].values == p->displacement[k] || list->rows[n].values == p->velocity[k]))
         list->rows[n].role = STATE_COMMITTED;
@@ -506,11 +506,6 @@ int solver_take_motion(Solver *s, double *const displacement[MOTIONS], double *c
   s->ledger.external_work += bonds + kinetic;
   ledger_note_paid(&s->ledger);
   return BRECCIA_OK;
-}
-
-void solver_put_arrays_back(Solver *s)
-{
-  domain_put_stresses_back(s->domain);
 }
 
 Energy solver_energy(const Solver *s)

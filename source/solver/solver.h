@@ -187,9 +187,9 @@ int solver_begin(Solver *solver, Error *error);
 int solver_measure(Solver *solver, StepCost *cost, Error *error);
 
 /** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit, but for how its
- *  equations are best solved, and for roundings where explicit steps are taken in place. Where energies or a trap give the reason the step has been taken, and
- *  counts; so too at rest, where bonds have broken in it and no equilibrium was found without them: the state is then one with these bonds broken that is not in
- *  equilibrium.
+ *  equations are best solved, and for round-off where explicit steps reconstruct the motion. Where energies or a trap
+ *  give the reason the step has been taken, and counts; so too at rest, where bonds have broken in it and no
+ *  equilibrium was found without them: the state is then one with these bonds broken that is not in equilibrium.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
 /** Takes over displacements and velocities that a program has written between steps: forces and accelerations follow,
@@ -197,13 +197,11 @@ int solver_advance(Solver *solver, Text *warning, Error *error);
  *  @param[in,out] displacement, velocity  as the last step left them; the former hold its changes afterwards */
 int solver_take_motion(Solver *solver, double *const displacement[MOTIONS], double *const velocity[MOTIONS],
                        Error *error);
-/** After steps, whatever has become of them: arrays of the body are where they were before. */
-void solver_put_arrays_back(Solver *solver);
 
 Energy solver_energy(const Solver *solver);
 
 /** What is copied: the whole state; what steps try, of the body and of what the solver keeps, by which one that fails is given back; or that without
- *  displacements and velocities, which the solver has. */
+ *  displacements and velocities, which the solver reconstructs. */
 typedef enum Kept { KEPT_ALL, KEPT_TRIED, KEPT_BUT_MOTION } Kept;
 
 /** Bytes of a copy. */

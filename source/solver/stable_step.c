@@ -38,7 +38,7 @@ static double radius(const Domain *d, int k, int64_t number)
 
 typedef struct Iteration { /* of Lanczos' method */
   Domain *domain;
-  const Evaluation *of;                  /* of a trial */
+  const Evaluation *of;                  /* perturbed evaluation */
   double *const *base_u, *const *base_f; /* displacements u and forces f(u); NULL: 0 */
   double **previous, **current;
   double h, alpha, beta;
@@ -83,7 +83,7 @@ static bool are_zero(const Particles *p, double *const *rows)
   return zero;
 }
 
-/** Reserves the rows of a vector; memory is taken where something is written. */
+/** Reserves the rows of a vector; the system gives memory where something is written. */
 static bool reserve(double *vector[MOTIONS], const Particles *p, Error *error)
 {
   for (int k = 0; k < MOTIONS; ++k) vector[k] = NULL;
@@ -92,8 +92,7 @@ static bool reserve(double *vector[MOTIONS], const Particles *p, Error *error)
   return true;
 }
 
-/* Memory is short before the first step of a large body: rows of the particles that are zero serve as vectors, and are
- * zero again afterwards. */
+/* To save memory, rows of the particles that are zero serve as vectors, and are cleared afterwards. */
 int stable_step(Domain *d, double *step, Error *error)
 {
   Particles *p = d->particles;
@@ -128,7 +127,7 @@ int stable_step(Domain *d, double *step, Error *error)
   for (int k = 0; k < motions; ++k)
     for (int64_t n = 0; n < p->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      it.current[k][p->place_of[n]] = k < d->body.dimensions || k >= ROTATION ? r / radius(d, k, n) : 0;
+      it.current[k][p->place_of[n]] = body_moves_along(&d->body, k) ? r / radius(d, k, n) : 0;
     }
   double norm = sqrt(mass_product(d, it.current, it.current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;

@@ -3,7 +3,6 @@
 #include "base/team.h"
 #include "solver/vectors.h"
 #include <math.h>
-#include <string.h>
 
 int stiffness_damping_create(StiffnessDamping *s, double time, const Domain *d, Error *error)
 {
@@ -31,19 +30,18 @@ size_t stiffness_damping_bytes(const StiffnessDamping *s, const Domain *d)
   return (s->drag[0] ? 4 * vectors_bytes(d->particles) : 0) + tensor_copy_bytes(&s->tensors);
 }
 
-void stiffness_damping_note(StiffnessDamping *s, const Particles *p)
+void stiffness_damping_note(StiffnessDamping *s, const Domain *d)
 {
-  for (int k = 0; k < p->motions; ++k) memcpy(s->was[k], p->displacement[k], sizeof(double) * (size_t)p->places);
+  vectors_combine(d, 0, s->was, 1, d->particles->displacement);
 }
 
 void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
 {
-  const size_t bytes = sizeof(double) * (size_t)d->particles->places;
   const bool elastic = domain_in_elastic_stage(d), linear = domain_is_elastic(d);
   tensor_copy_save(&s->tensors, d);
   domain_set_elastic_stage(d, true);
   if (!linear) domain_evaluate(d, &(Evaluation){.displacement = s->was, .internal = s->drag});
-  for (int k = 0; k < d->particles->motions && linear; ++k) memcpy(s->drag[k], d->particles->internal[k], bytes);
+  if (linear) vectors_combine(d, 0, s->drag, 1, d->particles->internal);
   domain_evaluate(d, &(Evaluation){.displacement = d->particles->displacement, .internal = s->force});
   domain_set_elastic_stage(d, elastic);
   tensor_copy_restore(&s->tensors, d);

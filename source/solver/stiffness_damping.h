@@ -11,7 +11,7 @@ typedef struct StiffnessDamping {
   double *was[MOTIONS];   /* displacements before the step */
   double *force[MOTIONS]; /* elastic forces per volume */
   double *drag[MOTIONS];  /* [places] force per volume against the motion, as found last */
-  double *left[MOTIONS];  /* internal forces, while those less the drag stand in their place */
+  double *left[MOTIONS];  /* internal forces, while the drag is subtracted from those of the particles */
 } StiffnessDamping;
 
 /** `damping` is zero; destroy it in any case. */
@@ -21,8 +21,9 @@ void stiffness_damping_destroy(StiffnessDamping *damping);
 size_t stiffness_damping_bytes(const StiffnessDamping *damping, const Domain *domain);
 
 /** Copies the displacements before a step. */
-void stiffness_damping_note(StiffnessDamping *damping, const Particles *particles);
-/** When displacements are those at the end of the step and nothing else is yet: finds the drag. By one thread, which has the team work.
+void stiffness_damping_note(StiffnessDamping *damping, const Domain *domain);
+/** Finds the drag. Call it when displacements are those at the end of the step, before its forces are evaluated, by one
+ *  thread; it runs on the team in use.
  *  @param[in] step  its length */
 void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double step);
 

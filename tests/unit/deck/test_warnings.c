@@ -121,10 +121,11 @@ static const struct {
      * horizon))^2 times two horizons: l of 1.75 and 1.66 horizons, and with a tail of 3 and 2.7 */
     {"m", PLASTIC("7.54 MPa", ""), "", NULL},
     {"m", PLASTIC("7.742 MPa", ""), "",
-     "cracks in material 'm' spread it over up to 0.0931 m, and damage-plasticity can spread it over 0.0894 m without "
-     "snapping back: cracks take 1.04 times G_F or more"},
+     "a crack in material 'm' is up to 0.0931 m wide, and damage-plasticity allows 0.0894 m at the most, beyond which "
+     "its curve would snap back: cracks take 1.04 times G_F or more"},
     {"m", PLASTIC("5.759 MPa", ", initial fracture energy: 40 N/m"), "", NULL},
-    {"m", PLASTIC("6.07 MPa", ", initial fracture energy: 40 N/m"), "", "can spread it over 0.0645 m without snapping"},
+    {"m", PLASTIC("6.07 MPa", ", initial fracture energy: 40 N/m"), "",
+     "damage-plasticity allows 0.0645 m at the most"},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "399 N/m"), "", NULL},
     {"m", STRONG("2.4", "30 GPa", "3 MPa", "401 N/m"), "", "fracture energy: 401 N/m " MUCH},

@@ -366,41 +366,41 @@ static void strains_that_are_left_out_are_found_to_the_same_bits(void **state)
   }
 }
 
-static void try_steps_in_place(const char *solve)
+static void try_steps_back(const char *solve)
 {
-  breccia_model *in_place = pulled_bar("green-lagrange", solve), *apart = pulled_bar("green-lagrange", solve);
-  const Particles *p = in_place->domain.particles, *q = apart->domain.particles;
+  breccia_model *back = pulled_bar("green-lagrange", solve), *apart = pulled_bar("green-lagrange", solve);
+  const Particles *p = back->domain.particles, *q = apart->domain.particles;
   apart->domain.may_leave_tensors = false;
-  domain_leave_tensors(&in_place->domain, true);
+  domain_leave_tensors(&back->domain, true);
   Entry entry;
-  assert_int_equal(model_enter(in_place, &entry, NULL), BRECCIA_OK);
-  assert_int_equal(model_begin(in_place, NULL), BRECCIA_OK);
-  for (int k = 0; k < 30; ++k) assert_int_equal(model_advance(in_place, NULL), BRECCIA_OK);
+  assert_int_equal(model_enter(back, &entry, NULL), BRECCIA_OK);
+  assert_int_equal(model_begin(back, NULL), BRECCIA_OK);
+  for (int k = 0; k < 30; ++k) assert_int_equal(model_advance(back, NULL), BRECCIA_OK);
   advance(apart, 30);
   assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
   assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
-  assert_true(in_place->solver.ledger.kinetic == apart->solver.ledger.kinetic);
+  assert_true(back->solver.ledger.kinetic == apart->solver.ledger.kinetic);
   const int32_t i = p->place_of[p->count / 2];
   assert_true(fabs(p->velocity[0][i]) > 1e-3);
   const double u = p->displacement[0][i + 8], v = p->velocity[0][i + 8];
   p->velocity[0][i] = NAN; /* the next step comes to no numbers */
-  assert_int_equal(model_advance(in_place, NULL), BRECCIA_FAILURE);
+  assert_int_equal(model_advance(back, NULL), BRECCIA_FAILURE);
   assert_near(p->displacement[0][i + 8], u, 1e-14);
   assert_near(p->velocity[0][i + 8], v, 1e-14);
   model_leave(&entry, BRECCIA_OK, NULL);
-  breccia_model_destroy(&in_place);
+  breccia_model_destroy(&back);
   breccia_model_destroy(&apart);
 }
 
-/** Steps that leave strains and stresses out are taken in place, to the same bits, and a step that fails gives back the
- * motion with which it began, but for round-off; also where damping is 2 / dt, so that the velocity in the middle of a
+/** Steps that leave strains and stresses out come to the same bits, and one that fails steps back to the motion with
+ * which it began, but for round-off; also where damping is 2 / dt, so that the velocity in the middle of a
  * step says nothing of that at its beginning. */
-static void steps_in_place_lead_to_the_same_bits(void **state)
+static void steps_that_step_back_lead_to_the_same_bits(void **state)
 {
   (void)state;
-  try_steps_in_place("solve: {explicit: {steps: 40, damping: 0.02}}\n");
-  try_steps_in_place("loads: [{gravity: [3, 1, 0]}]\n"
-                     "solve: {explicit: {steps: 40, time step: 0.015625, damping: 128}}\n");
+  try_steps_back("solve: {explicit: {steps: 40, damping: 0.02}}\n");
+  try_steps_back("loads: [{gravity: [3, 1, 0]}]\n"
+                 "solve: {explicit: {steps: 40, time step: 0.015625, damping: 128}}\n");
 }
 
 /** Stages that linearise, what breaks, and watches of stresses need them in every step. */
@@ -479,7 +479,7 @@ int main(void)
       cmocka_unit_test(so_it_does_where_laws_are_in_servers),
       cmocka_unit_test(a_step_that_fails_gives_back_every_bit),
       cmocka_unit_test(strains_that_are_left_out_are_found_to_the_same_bits),
-      cmocka_unit_test(steps_in_place_lead_to_the_same_bits),
+      cmocka_unit_test(steps_that_step_back_lead_to_the_same_bits),
       cmocka_unit_test(strains_are_kept_where_steps_need_them),
       cmocka_unit_test(arrays_stay_where_they_are),
       cmocka_unit_test(rows_have_names_of_their_own_and_known_units),
