@@ -18,6 +18,7 @@ static const char *const measure_names[MEASURES] = {[UNBALANCED] = "rest.unbalan
                                                     [INVERTED] = "measures.inverted",
                                                     [IMBALANCE] = "energy.imbalance",
                                                     [REDUCTION] = "measures.strength reduction",
+                                                    [LOST] = "measures.lost reduction",
                                                     [STEP] = "measures.step",
                                                     [EXCESS] = "measures.excess"};
 
@@ -73,8 +74,8 @@ Trial failure_judge(Search *s, const breccia_study *study, int k, double load)
   breccia_study_case_at(study, k, &one);
   snprintf(t.name, sizeof t.name, "%s", one.name);
   for (int n = 0; n < MEASURES; ++n) breccia_study_figure(study, k, measure_names[n], &t.measure[n]);
-  t.done = one.state == BRECCIA_CASE_DONE;
-  if (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k)) {
+  t.done = one.state == BRECCIA_CASE_DONE && isnan(t.measure[LOST]);
+  if (isfinite(t.measure[LOST]) || (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k))) {
     t.verdict = FAILS;
     t.reason = BY_EQUILIBRIUM;
     for (int n = UNBALANCED; n <= IMBALANCE; ++n) t.measure[n] = NAN; /* of a state under another load */

@@ -7,14 +7,14 @@
 enum { BENDING_DEPTHS = 3 };
 static const double bending_depths[BENDING_DEPTHS] = {0.3, 0.6, 1.2};
 
-/** Measured beams of one formulation, law and number of rows. */
+/** Beams of one formulation, law and number of rows (0: with one cohesive crack). */
 typedef struct BendingRow {
   const char *formulation, *law;
   double rows;
-  double factor[BENDING_DEPTHS]; /* bending strength over that of a cohesive crack, by depth */
+  double factor[BENDING_DEPTHS]; /* bending strength over that of a cohesive crack, or its own over f_t, by depth */
 } BendingRow;
 
-/* Copy of the table "Bending strength" of docs/choosing.md, which bench/bending.py writes: default horizon of each
+/* Copies of the table "Bending strength" of docs/choosing.md, which bench/bending.py writes: default horizon of each
  * formulation, plane stress, square lattices, bonds with `surface correction: energy`. The entries of a law are in
  * ascending order of `rows`. */
 static const BendingRow bending_rows[] = {
@@ -27,8 +27,17 @@ static const BendingRow bending_rows[] = {
     {"hybrid", "mazars", 10, {0.95, 0.95, 0.96}},
     {"hybrid", "mazars", 20, {0.98, 0.98, 0.99}},
 };
+static const BendingRow cohesive_beams[] = {
+    {"bond-based", "exponential-softening", 0, {1.35, 1.22, 1.14}},
+    {"bond-based", "bilinear-softening", 0, {1.75, 1.56, 1.38}},
+    {"bond-based", "trilinear-softening", 0, {1.61, 1.42, 1.28}},
+    {"hybrid", "mazars", 0, {1.59, 1.41, 1.26}},
+};
 
-enum { BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows };
+enum {
+  BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows,
+  COHESIVE_BEAMS = sizeof cohesive_beams / sizeof *cohesive_beams
+};
 
 /** Tensile strength of a strip of links, pulled along the rows of its lattice, over E times the `tensile stretch`. */
 typedef struct LinkRow {
@@ -67,6 +76,14 @@ double bending_factor(const char *formulation, const char *law, double rows, dou
     below = row;
   }
   return below ? bending_at_depth(below, depth) : NAN;
+}
+
+double bending_cohesive(const char *formulation, const char *law, double depth)
+{
+  for (int k = 0; k < COHESIVE_BEAMS; ++k)
+    if (!strcmp(cohesive_beams[k].formulation, formulation) && !strcmp(cohesive_beams[k].law, law))
+      return bending_at_depth(&cohesive_beams[k], depth);
+  return NAN;
 }
 
 /** Finds the shortest and the longest side of a block [length]: the distance of its outermost particles and one
@@ -115,10 +132,11 @@ static void bending_describe_block(const Domain *d, int block, const Region *reg
   }
   const bool measured = rows > least - 0.5 && rows < most + 0.5 && relative >= bending_depths[0] &&
                         relative <= bending_depths[BENDING_DEPTHS - 1];
+  const double cohesive = bending_cohesive(type->name, m->law_name, relative);
   text_add(text,
-           "%s: a beam of %.0f rows, %.2g E G_F/f_t^2 deep, carries %.2f times the bending strength of a cohesive "
-           "crack of the same f_t, G_F and softening curve (",
-           d->body.blocks[block]->head.name, rows, relative, factor);
+           "%s: a beam of %.0f rows, %.2g E G_F/f_t^2 deep, has a bending strength of %.2f f_t, %.2f times that of a "
+           "cohesive crack of the same f_t, G_F and softening curve (%.2f f_t; ",
+           d->body.blocks[block]->head.name, rows, relative, factor * cohesive, factor, cohesive);
   if (!measured)
     text_add(text, "value of the nearest beam of the measured %g to %g rows and %g to %g E G_F/f_t^2; ", least, most,
              bending_depths[0], bending_depths[BENDING_DEPTHS - 1]);

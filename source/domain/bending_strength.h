@@ -13,7 +13,13 @@
  *          law was not measured */
 double bending_factor(const char *formulation, const char *law, double rows, double depth);
 
-/** Adds a line for each block that is at least twice as long as deep, with the measured factor of its bending strength,
+/** Bending strength of a beam with one cohesive crack over the tensile strength.
+ *  @param[in] depth   depth of the beam over E G_F / f_t^2
+ *  @return interpolated in the logarithm of the depth between 0.3 and 1.2, and constant beyond; NaN: not computed for
+ *          the law */
+double bending_cohesive(const char *formulation, const char *law, double depth);
+
+/** Adds a line for each block that is at least twice as long as deep, with its bending strength over the tensile one,
  *  and a line for each block of links, with the measured factor of its tensile strength along its rows. */
 void bending_strength_describe(const Domain *domain, Text *text);
 

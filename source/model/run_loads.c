@@ -146,6 +146,29 @@ static void run_loads_tell_resultant(const breccia_model *model, const Load *loa
   text_add(t, "\n");
 }
 
+/** Returns true if a motion that only presses has moved and has had no force at any time that was looked at. */
+static bool run_loads_missed(const breccia_model *model, const Load *load, const Resultant *r)
+{
+  const Loading *loading = &model->loading;
+  bool only_presses = false;
+  for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c)
+    only_presses |= c->load == load && c->one_sided;
+  return only_presses && r->exerts && r->largest[0] == 0 && r->largest[1] == 0 && r->largest[2] == 0 &&
+         run_loads_peak(model, load) != 0;
+}
+
+/** Warns of motions that only press and never did. */
+static void run_loads_tell_missed(const breccia_model *model, const Resultant *resultants, Text *t)
+{
+  for (int k = 0; k < model->loading.count; ++k) {
+    const Load *load = &model->loading.loads[k];
+    if (!run_loads_missed(model, load, &resultants[k])) continue;
+    text_add(t, "warning: ");
+    run_loads_name(model, load, t);
+    text_add(t, " only presses and never pressed: it moves away from the body; look at the sign of its motion\n");
+  }
+}
+
 /** Returns true if a stage up to the current one has short steps of which only some are evaluated. */
 static bool run_loads_have_gaps(const Solver *s)
 {
@@ -194,5 +217,6 @@ void run_tell_loads(const breccia_model *model, Text *t)
   for (int between = 0; between < 2 && resultants; ++between)
     quiet += run_loads_tell_resultants(model, resultants, between, t);
   if (quiet) text_add(t, "  %d loads without names: summary.json tells each\n", quiet);
+  if (resultants) run_loads_tell_missed(model, resultants, t);
   free(resultants);
 }

@@ -81,6 +81,8 @@ void run_add_measures(const breccia_model *model, Text *text)
   int32_t first;
   text_add(text, "  \"measures\": {\"displacement\": %.10g", largest_displacement(d->particles));
   run_add_measure(text, "strength reduction", loading_strength_reduction(s->loading, s->clock.time));
+  const double lost = s->records[s->clock.stage].lost_reduction;
+  run_add_measure(text, "lost reduction", lost > 0 ? lost : NAN);
   run_add_measure(text, "step", step);
   run_add_measure(text, "excess", step > 0 ? ground_step_excess(d, step) : 0);
   run_add_measure(text, "size", longest_side(&d->body));

@@ -393,9 +393,18 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
   bool any = false;
   for (int k = 0; k < model->loading.count; ++k)
     any |= model->loading.loads[k].type == &strength_reduction_load && load_acts(s->loading, &model->loading.loads[k]);
-  if (any)
-    text_add(t, "strengths are divided by %.4g%s\n", loading_strength_reduction(s->loading, s->clock.time),
-             failed ? " in the last state that the run came to" : "");
+  const double factor = loading_strength_reduction(s->loading, s->clock.time),
+               lost = s->records[s->clock.stage].lost_reduction;
+  if (any && lost > 0)
+    text_add(t,
+             "factor of safety %.4g: the body is at rest with strengths divided by it; divided by %.4g they gave no "
+             "equilibrium\n",
+             factor, lost);
+  else if (any)
+    text_add(t, "strengths are divided by %.4g%s\n", factor,
+             failed              ? " in the last state that the run came to"
+             : solver_is_done(s) ? " in the end; no larger factor was tried"
+                                 : "");
   const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
   if (step > 0)
     text_add(t, "at %.0f spacings across the height of the ground's step the factor may be some %.0f %% too high\n",

@@ -149,6 +149,13 @@ static void end_now(Clock *clock)
   clock->stage_end = clock->time;
 }
 
+/** Counts an increment of no length as the last one of the stage. */
+static void take_no_time(Clock *clock)
+{
+  ++clock->step;
+  clock->stage_last = clock->step;
+}
+
 /** Says why an increment is not taken as it is. */
 static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
 {
@@ -260,6 +267,22 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
                            : "the control of zero-energy modes fades",
                    solver_stage_name(run, clock->stage + 1, name, sizeof name));
   end_now(clock);
+}
+
+/** Returns true if a strength reduction, and no other load, has grown since the beginning of the stage, which is the
+ *  last one: where no equilibrium is found the stage has found its factor. */
+static bool finds_reduction(const Solver *run)
+{
+  const Clock *clock = &run->clock;
+  const double begin = run->records[clock->stage].begin;
+  if (clock->stage + 1 < clock->stages || ((const Static *)run->own)->spec->control) return false;
+  for (int k = 0; k < run->loading->count; ++k) {
+    const Load *load = &run->loading->loads[k];
+    if (load->type == &strength_reduction_load || !load_acts(run->loading, load) || !load_magnitude(load->spec))
+      continue;
+    if (load_factor(load, clock->time) != load_factor(load, begin)) return false;
+  }
+  return loading_strength_reduction(run->loading, clock->time) > loading_strength_reduction(run->loading, begin);
 }
 
 /** Notes that the body jumped in the increment that the clock has just counted.
@@ -455,8 +478,13 @@ int static_advance(Solver *run, Text *warning, Error *error)
       }
       if (static_hands_over(s->spec)) {
         hand_over(run, outcome, settled, warning);
-        ++clock->step; /* one of no length */
-        clock->stage_last = clock->step;
+        take_no_time(clock);
+        break;
+      }
+      if (finds_reduction(run)) {
+        run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, end);
+        end_now(clock);
+        take_no_time(clock);
         break;
       }
       fail(s, outcome, settled, error);

@@ -16,7 +16,7 @@ static int create(Load *load, const LoadMaking *making)
   if (!history_is_controlled(&load->history)) return BRECCIA_OK;
   return node_error(reader->document, load->history.value_node, reader->error,
                     "controlled: the factor of a strength reduction is not found by 'control'; give it a 'ramp' or a "
-                    "'table', and the run ends with the largest factor that has an equilibrium");
+                    "'table', and the run ends well with the largest factor that has an equilibrium");
 }
 
 static double magnitude(const LoadValue *value)

@@ -273,13 +273,17 @@ static void bending_strength_is_told(void **state)
   breccia_model *m =
       model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 60, "bond-based");
   const char *words = strstr(breccia_model_overview(m), "b: a beam of ");
-  double rows, depth, factor;
+  double rows, depth, strength, factor;
   assert_non_null(words);
-  assert_int_equal(
-      sscanf(words, "b: a beam of %lf rows, %lf E G_F/f_t^2 deep, carries %lf times", &rows, &depth, &factor), 3);
+  assert_int_equal(sscanf(words,
+                          "b: a beam of %lf rows, %lf E G_F/f_t^2 deep, has a bending strength of %lf f_t, %lf times",
+                          &rows, &depth, &strength, &factor),
+                   4);
   assert_near(rows, 20, 1e-9);
   assert_near(depth, 0.6, 1e-9);
   assert_near(factor, bending_factor("bond-based", "bilinear-softening", 20, 0.6), 5e-3);
+  assert_near(strength, factor * bending_cohesive("bond-based", "bilinear-softening", 0.6), 1e-2);
+  assert_non_null(strstr(words, "softening curve (1.56 f_t; "));
   breccia_model_destroy(&m);
   m = model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 30, "bond-based");
   assert_null(strstr(breccia_model_overview(m), "a beam of ")); /* too short for a beam */

@@ -258,6 +258,29 @@ static void what_only_presses_is_told(void **state)
   breccia_model_destroy(&m);
 }
 
+/** A jack that moves away from the body is warned of; one that is held still, or presses, is not. */
+static void a_jack_that_moves_away_is_warned_of(void **state)
+{
+  (void)state;
+  static const struct {
+    double motion;
+    bool warned;
+  } jacks[] = {{0.1, true}, {-0.1, false}, {0, false}};
+  for (size_t k = 0; k < sizeof jacks / sizeof *jacks; ++k) {
+    breccia_model *m = model_of(BLOCK "  - {on: {face: y-}, displacement: [0, 0]}\n"
+                                      "  - {name: jack, on: {face: y+}, displacement: [free, %g], only presses: yes, "
+                                      "history: {ramp to: 1}}\nsolve: {static: {increments: 2}}\n",
+                                jacks[k].motion);
+    Text text = {0};
+    step_surely(m, 10);
+    run_tell_loads(m, &text);
+    const bool warned = strstr(text_words(&text), "warning: load 'jack' only presses and never pressed");
+    if (warned != jacks[k].warned) fail_msg("jack by %g: %s", jacks[k].motion, text_words(&text));
+    text_free(&text);
+    breccia_model_destroy(&m);
+  }
+}
+
 /* ---- bars that bounce ---- */
 
 /* Waves run at 1 m/s along a bar of 1 m and 1 kg that flies with 1e-3 m/s against a wall, which it reaches after 0.1 s.
@@ -439,6 +462,7 @@ int main(void)
       cmocka_unit_test(an_eccentric_load_tips_a_block_on_rollers),
       cmocka_unit_test(a_body_that_nothing_holds_down_flies_away),
       cmocka_unit_test(what_only_presses_is_told),
+      cmocka_unit_test(a_jack_that_moves_away_is_warned_of),
       cmocka_unit_test(a_bar_bounces_off_a_wall),
       cmocka_unit_test(a_jack_leaves_its_beam),
       cmocka_unit_test(threads_and_restarts_change_no_bit),

@@ -109,7 +109,8 @@ static void strengths_of_all_regions_are_divided(void **state)
 
 /** Ground on a slope without end, of height 10 m along its normal, whose gravity leans by atan(0.5); periodic along the
  * slope. */
-static breccia_model *slope_of(const char *formulation, const char *law, int layers)
+static breccia_model *slope_of(const char *formulation, const char *law, int layers, const char *load,
+                               const char *stage)
 {
   breccia_model *m = model_of(
       UNITS
@@ -121,9 +122,10 @@ static breccia_model *slope_of(const char *formulation, const char *law, int lay
       "loads: [{gravity: [\"${g*sin(lean)}\", \"${-g*cos(lean)}\"]}, {on: {face: y-}, support: {held: all}}, "
       "{on: {face: x+}, support: {held: periodic}}]\n"
       "solve: [{name: at rest, laws: elastic, static: {increments: 1}}, {name: weaken, displacements: zero, "
-      "loads: [{strength reduction: 2, history: {ramp to: 1}}], static: {increments: 20, smallest increment: 0.05}}]\n"
+      "loads: [{strength reduction: 2, history: {ramp to: 1}}%s], static: {increments: 20, smallest increment: "
+      "0.05}}%s]\n"
       "pictures: []\n",
-      law, 10.0 / layers, 40.0 / layers, formulation);
+      law, 10.0 / layers, 40.0 / layers, formulation, load, stage);
   m->threads = 1;
   return m;
 }
@@ -144,15 +146,42 @@ static void slopes_without_end_slide_at_their_closed_form(void **state)
   };
   for (size_t k = 0; k < sizeof slopes / sizeof *slopes; ++k) {
     const int layers = 10;
-    breccia_model *m = slope_of(slopes[k].formulation, slopes[k].law, layers);
+    breccia_model *m = slope_of(slopes[k].formulation, slopes[k].law, layers, "", "");
     Error *error = breccia_error_create();
     int status = 0;
     while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
     const double factor = loading_strength_reduction(&m->loading, m->solver.clock.time),
                  right = slopes[k].cohesion / (gamma * height * sine) + slopes[k].friction / 0.5;
-    if (!status || !strstr(breccia_error_text(error), "no equilibrium"))
-      fail_msg("slope %zu: finds equilibrium at all factors, or fails otherwise: %s", k, breccia_error_text(error));
+    const double lost = m->solver.records[m->solver.clock.stage].lost_reduction;
+    if (status) fail_msg("slope %zu: %s", k, breccia_error_text(error));
+    if (!(m->solver.clock.time < 1.99)) fail_msg("slope %zu finds equilibrium at all factors", k);
+    if (!(lost > factor && lost < factor + 0.06)) fail_msg("slope %zu: lost at %g, found at %g", k, lost, factor);
     if (!(factor > 0.97 * right && factor < 1.07 * right)) fail_msg("slope %zu: %g in place of %g", k, factor, right);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Where another load grows, too, or a stage follows, the end of equilibrium is no factor of safety, and a failure. */
+static void a_factor_is_found_by_a_reduction_alone(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *load, *stage;
+  } others[] = {{", {gravity: [1e-3, 0], history: {ramp to: 1}}", ""},
+                {"", ", {name: after, static: {increments: 1}}"},
+                {", {gravity: [1e-3, 0]}", ""}};
+  for (int k = 0; k < 3; ++k) {
+    const bool found = k == 2; /* a load that stays */
+    breccia_model *m =
+        slope_of("formulation: ordinary", J2 "yield stress: \"${sqrt(3)*110}\"", 5, others[k].load, others[k].stage);
+    Error *error = breccia_error_create();
+    int status = 0;
+    while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
+    const char *words = breccia_error_text(error);
+    if (found ? status != 0 : !status || !strstr(words, "no equilibrium"))
+      fail_msg("slope %d: %d, %s", k, status, words);
+    assert_true((m->solver.records[m->solver.clock.stage].lost_reduction > 1) == found);
     breccia_error_destroy(&error);
     breccia_model_destroy(&m);
   }
@@ -276,6 +305,7 @@ int main(void)
       cmocka_unit_test(divided_strengths_are_those_of_divided_parameters),
       cmocka_unit_test(strengths_of_all_regions_are_divided),
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
+      cmocka_unit_test(a_factor_is_found_by_a_reduction_alone),
       cmocka_unit_test(wrong_reductions_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
