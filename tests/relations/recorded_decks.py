@@ -878,5 +878,162 @@ SOLVERS = {
     "static stages": static_stages,
 }
 
+class WideDeck(Deck):
+    """A deck of a body that no other deck has: particles from a file, a file beside a lattice, blocks of unlike
+    spacings, three materials, more layers than a family is deep; with odd sizes, thicknesses and densities."""
+
+    def materials(self):
+        super().materials()
+        kinds = ("file", "file beside", "three", "deep", "spacings")[: 4 if self.space == "3-D" else 5]
+        self.kind = "line" if self.space == "1-D" else self.choose.one("kind", kinds)
+        if self.kind in ("deep", "spacings") and self.solver not in ("explicit", "stages"):
+            self.solver = "explicit"  # the others take seconds for these bodies
+        if self.law in ("elastic-1d", "elastic-brittle", "bilinear-softening", "trilinear-softening"):
+            self.text["materials"]["m"].pop("smallest strain", None)
+        self.text["materials"]["m"]["density"] = "1.7 t/m3"
+        self.two = self.kind in ("file beside", "spacings", "three")
+        line = self.formulation == "bond-based"
+        others = (
+            {"model": "elastic-1d", "Young modulus": "2.6e4 kPa", "density": "2.9 t/m3"} if line
+            else {"model": "elastic", "Young modulus": "2.6e4 kPa", "Poisson ratio": 0.23, "density": "2.9 t/m3"},
+            {"model": "elastic-1d", "Young modulus": "0.7e4 kPa", "density": "1.3 t/m3"} if line
+            else {"model": "elastic", "Young modulus": "0.7e4 kPa", "Poisson ratio": 0.11, "density": "1.3 t/m3"},
+        )  # fmt: skip
+        for name, other in zip("no"[: 2 if self.kind == "three" else 1 if self.two else 0], others):
+            self.text["materials"][name] = other
+
+    def body(self):
+        flat = self.flat()
+        common = {"lattice": "square" if flat else "cubic", "spacing": "0.1 m"}
+        if flat:
+            common["thickness"] = "0.27 m"
+        if self.kind == "line":
+            common = {"lattice": "line", "spacing": "0.07 m", "area": "0.013 m2"}
+            shape = {"box": {"particles": [17, 1], "first particle": ["0.135 m", 0]}}
+            self.text["body"] = {"b": {"material": "m", **common, "shape": shape}}
+            self.boxed = False
+            return
+        low, high = (0.1, 0.2, -0.1), (0.9 if flat else 0.7, 0.7 if flat else 0.5, 0.2)
+        self.boxed = self.kind in ("three", "deep")
+        file = {"material": "m", **common, "file": "plane.csv" if flat else "space.csv"}
+        if self.kind == "file":
+            self.text["body"] = {"b": file}
+        if self.kind == "file beside":
+            beyond = self.box((high[0], low[1], low[2]), (high[0] + 0.3, high[1], high[2]))
+            self.text["body"] = {"c": {"material": "n", **common, "shape": beyond}, "b": file}
+        if self.kind == "spacings":
+            self.text["body"] = {
+                "b": {"material": "m", **common, "shape": self.box(low, (0.5, *high[1:]))},
+                "c": {"material": "n", **common, "spacing": "0.05 m", "shape": self.box((0.5, *low[1:]), high)},
+            }
+        if self.kind == "three":
+            self.text["body"] = {
+                "b": {"material": "m", **common, "shape": self.box(low, (0.4, *high[1:]))},
+                "c": {"material": "n", **common, "shape": self.box((0.4, *low[1:]), (0.6, *high[1:]))},
+                "d": {"material": "o", **common, "shape": self.box((0.6, *low[1:]), high)},
+            }
+        if self.kind == "deep":
+            high = (1.3, 0.9, 0) if flat else (0.8, 0.7, 0.5)
+            self.text["body"] = {"b": {"material": "m", **common, "shape": self.box(low, high)}}
+
+    def peridynamics(self):
+        super().peridynamics()
+        text = self.text["peridynamics"]
+        if self.kind in ("deep", "line"):
+            text["horizon"] = self.choose.one("reach", ("3.015 spacings", "2.6 spacings"))
+        if self.kind == "spacings":
+            text["horizon"] = "0.21 m"
+        if self.kind in ("file", "file beside"):
+            text["horizon"] = self.choose.one("reach", ("0.2015 m", "0.17 m"))
+
+    def loads(self):
+        super().loads()
+        for load in self.text["loads"]:
+            if self.kind in ("file", "file beside") and set(load) & {"pressure", "traction"}:
+                load.setdefault("area", "0.13 m2")
+
+
+class Laboratory:
+    """A test of one material point: arguments of `breccia material`."""
+
+    SOLID = ("uniaxial", "triaxial", "undrained triaxial", "oedometer", "biaxial", "isotropic", "simple shear",
+             "undrained shear")  # fmt: skip
+
+    def __init__(self, number):
+        choose = Choices(number)
+        self.law = list(LAWS)[number % len(LAWS)]
+        always, optional, formulations = LAWS[self.law]
+        text = {**always, **choose.some("material", optional, 0.5)}
+        if "octahedral strength" in text:
+            text.pop("friction angle", None)
+        if self.law == "elastic-brittle":
+            text.update(choose.one("brittle", BRITTLE))
+        if self.law == "link-damage":
+            text.update(choose.one("spends", SPENDS))
+        if "fracture energy" in text or "crushing energy" in text:
+            text["length"] = "0.12 m"
+        line = formulations == ("bond-based",)
+        test = "uniaxial" if line else choose.one("test", self.SOLID)
+        size = choose.one("size", (0.004, -0.004, 0.012, -0.012, 0.03, -0.03))
+        words = ["material", "--model", self.law, "--test", test, "--to", size, "--steps", choose.one("steps", (7, 19))]
+        for key, value in text.items():
+            words += ["--set", f"{key}={value}"]
+        if choose.holds("cycles", 0.6):
+            words += ["--cycles", choose.one("cycles", (1, 2))]
+            if choose.holds("return", 0.5):
+                words += ["--return", -0.3 * size]
+        if test != "uniaxial" and choose.holds("confining", 0.5):
+            words += ["--confining", choose.one("pressure", ("8 kPa", "35 kPa"))]
+            if choose.holds("zero", 0.3):
+                words += ["--strain-zero", "before consolidation"]
+        if self.law == "viscoelastic":
+            words += ["--duration", "3 ms"]
+        if choose.holds("units", 0.3):
+            words += ["--units", "cm,kN,s"]
+        self.words = [str(word) for word in words + ["--tangent"]]
+
+
+class Pictures:
+    """Pictures of the results of a deck: arguments of `breccia plot` for each."""
+
+    FIELDS = ("displacement", "velocity", "stress", "strain", "damage", "internal force")
+    PARTS = {"stress": ("xx", "yy", "xy"), "strain": ("yy", "xy"), "damage": ("",)}
+
+    def __init__(self, number):
+        self.deck = deck(PICTURES[number - PICTURE])
+        self.words = [self.picture(Choices(f"{number} {n}")) for n in range(5)]
+
+    def picture(self, choose):
+        field = choose.one("field", self.FIELDS)
+        part = choose.one("part", self.PARTS.get(field, ("x", "y", "")))
+        words = ["--field", field] + (["--component", part] if part else [])
+        words += ["--step", "0"] if choose.holds("step", 0.2) else []
+        words += choose.one("deformed", ([], ["--deformed", "0"], ["--deformed", "7"]))
+        words += choose.one("size", ([], ["--size", "333"]))
+        words += ["--broken-bonds"] if choose.holds("bonds", 0.4) else []
+        words += ["--range=-0.003:0.011"] if choose.holds("range", 0.2) else []
+        if choose.holds("inside", 0.3):
+            low, high = (20, 55) if self.deck.text["units"]["length"] == "cm" else (0.2, 0.55)
+            words += ["--inside", f"{low}:{high},{low}:" + (",:" if self.deck.space == "3-D" else "")]
+        if self.deck.space == "3-D":
+            words += choose.one("view", ([], ["--view", "35:20"], ["--view=-120:-40"]))
+        return words
+
+
 RECORD = "time (ms),late (ms),a,b\n" + "".join(
     f"{0.5 * n:g},{0.7 * n + 1:g},{n % 3},{0.2 * n + 0.3 * (n % 4):.10g}\n" for n in range(12))  # fmt: skip
+
+# Particles that stand in no lattice, with volumes of their own; the columns have units that no deck has.
+PLANE = "x (mm),y (mm),volume (cm3)\n" + "".join(
+    f"{100 * i + 150 + 7 * ((i * j) % 3)},{100 * j + 250 + 4 * ((i + 2 * j) % 5)},{2700 + 31 * ((2 * i + j) % 4)}\n"
+    for i in range(9) for j in range(7))  # fmt: skip
+SPACE = "x (mm),y (mm),z (mm),volume (cm3)\n" + "".join(
+    f"{100 * i + 150 + 7 * ((i * j) % 3)},{100 * j + 250 + 4 * ((i + k) % 5)},{100 * k - 50 + 3 * ((i + j) % 4)},"
+    f"{1000 + 13 * ((2 * i + j + k) % 4)}\n" for i in range(6) for j in range(5) for k in range(5))  # fmt: skip
+FILES = {"record.csv": RECORD, "plane.csv": PLANE, "space.csv": SPACE}
+WIDE, LABORATORY, PICTURE = 1000, 2000, 3000  # first numbers of wide decks, of tests of the laboratory, and of pictures
+PICTURES = (1016, 1018, 1024, 1010, 1044, 1049)  # decks that run in a moment
+
+
+def deck(number):
+    return (WideDeck if number >= WIDE else Deck)(number)
