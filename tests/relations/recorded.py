@@ -34,12 +34,13 @@ import recorded_decks
 HERE = os.path.dirname(os.path.abspath(__file__))
 RECORD = os.path.join(HERE, "recorded.txt")
 # Numbers that --record tries, and the number of cases that are recorded of those that run: decks, wide decks, tests of
-# the laboratory, pictures (recorded_decks.py).
+# the laboratory, pictures, other verbs (recorded_decks.py).
 NUMBERS = {
     range(900): 300,
     range(recorded_decks.WIDE, 1066): 50,
     range(recorded_decks.LABORATORY, 2104): 104,
     range(recorded_decks.PICTURE, recorded_decks.PICTURE + len(recorded_decks.PICTURES)): 9,
+    range(recorded_decks.VERB, recorded_decks.VERB + len(recorded_decks.VERBS)): 99,
 }
 # Cases that other compilers lead to other results.
 UNSTABLE = (1001, 1020, 1022, 1023, 1043, 1059, 2078, 2080)
@@ -168,6 +169,21 @@ def groups_of_picture(paths):
     return outputs.Group("number", "", colours, "colours"), outputs.Group("number", "", lines[1:], "lines")
 
 
+def run_verb(options, folder, number):
+    """Calls another verb; figures are those of the tables that it writes, and of the words."""
+    deck, words = recorded_decks.VERBS[number - recorded_decks.VERB]
+    write_files(folder, deck_of(deck))
+    os.makedirs(os.path.join(folder, "out"), exist_ok=True)
+    done = subprocess.run([options.command, *words.split()], cwd=folder, capture_output=True, text=True, timeout=120)
+    groups = {}
+    for path in sorted(glob.glob(os.path.join(folder, "out", "*.csv"))) if done.returncode == 0 else ():
+        name = os.path.basename(path)
+        groups.update({f"{name}, {key}": g for key, g in outputs.groups_of_table(path, name).items()})
+    names, figures = figures_of(groups)
+    lines, numbers = words_of(done.stdout + done.stderr)
+    return Outcome(done.returncode, lines, figures + [fold(numbers, [1e-6] * len(numbers))], names + [WORDS])
+
+
 def write_files(folder, deck):
     os.makedirs(folder)
     for name, text in {"deck.yaml": deck, **recorded_decks.FILES}.items():
@@ -176,6 +192,8 @@ def write_files(folder, deck):
 
 
 def run(options, folder, number):
+    if number >= recorded_decks.VERB:
+        return run_verb(options, folder, number)
     if number >= recorded_decks.PICTURE:
         return run_pictures(options, folder, number)
     if number >= recorded_decks.LABORATORY:
@@ -385,7 +403,7 @@ def main():
     tried = [number for numbers in NUMBERS for number in numbers if number not in UNSTABLE]
     numbers = tried if options.record else list(expected)
     if libraries and libraries != libraries_of(options):
-        numbers = [n for n in numbers if n not in ROUND_OFF and n < recorded_decks.PICTURE]
+        numbers = [n for n in numbers if n not in ROUND_OFF and not recorded_decks.PICTURE <= n < recorded_decks.VERB]
         print(f"recorded with other {libraries}: {len(expected) - len(numbers)} decks of round-off are left out")
     if options.only is not None:
         numbers = [options.only]
@@ -393,8 +411,10 @@ def main():
             print(json.dumps(recorded_decks.deck(options.only).text, indent=1))
         elif options.only < recorded_decks.PICTURE:
             print("breccia", *recorded_decks.Laboratory(options.only).words)
-        else:
+        elif options.only < recorded_decks.VERB:
             print("\n".join(" ".join(words) for words in recorded_decks.Pictures(options.only).words))
+        else:
+            print(*recorded_decks.VERBS[options.only - recorded_decks.VERB])
     options.work = tempfile.mkdtemp(prefix="recorded")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         outcomes = list(zip(numbers, pool.map(lambda number: try_deck(options, number), numbers)))

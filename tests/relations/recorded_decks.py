@@ -1031,9 +1031,51 @@ SPACE = "x (mm),y (mm),z (mm),volume (cm3)\n" + "".join(
     f"{100 * i + 150 + 7 * ((i * j) % 3)},{100 * j + 250 + 4 * ((i + k) % 5)},{100 * k - 50 + 3 * ((i + j) % 4)},"
     f"{1000 + 13 * ((2 * i + j + k) % 4)}\n" for i in range(6) for j in range(5) for k in range(5))  # fmt: skip
 FILES = {"record.csv": RECORD, "plane.csv": PLANE, "space.csv": SPACE}
-WIDE, LABORATORY, PICTURE = 1000, 2000, 3000  # first numbers of wide decks, of tests of the laboratory, and of pictures
+# First numbers of wide decks, of tests of the laboratory, of pictures, and of other verbs.
+WIDE, LABORATORY, PICTURE, VERB = 1000, 2000, 3000, 4000
 PICTURES = (1016, 1018, 1024, 1010, 1044, 1049)  # decks that run in a moment
 
 
 def deck(number):
     return (WideDeck if number >= WIDE else Deck)(number)
+
+
+# Calls of other verbs, each list in a folder of its own: the number of its deck, and the calls, which write to `out`.
+SPECTRUM = "spectrum record.csv --output out"
+VERBS = (
+    (0, f"{SPECTRUM} --column b --unit g --count 9 --periods 0.0007:0.02 --damping 0.13"),
+    (0, f"{SPECTRUM} --column a --times late --unit m/s --count 7 --smoothing 0"),
+    (0, f"{SPECTRUM} record.csv --column b --below-column a --unit m/s2 --count 5 --smoothing 17 --damping 0"),
+    (0, "material stages.yaml --tangent --output out/stages.csv"),
+    (0, "material slow.yaml --tangent --output out/slow.csv"),
+    (0, "calibrate fit.yaml"),
+    (0, "calibrate concrete --fc 4000psi --aggregate 20mm --unverified"),
+    (0, "calibrate concrete --fc 37MPa --ft 2.9MPa --fracture-energy 88N/m --initial-fracture-energy 40N/m "
+     "--modulus 33GPa --poisson 0.17 --density 2350kg/m3 --spacing 0.03m --unverified"),
+    (1003, "modes deck.yaml --count 4 --output out"),
+    (1010, "modes deck.yaml --count 4 --output out"),
+    (1016, "modes deck.yaml --count 3 --output out"),
+    (1024, "modes deck.yaml --count 3 --output out"),
+)  # fmt: skip
+STAGES = """units: {length: m, force: kN, time: s}
+material: {model: drucker-prager, density: 2 t/m3, Young modulus: 2e4 kPa, Poisson ratio: 0.2, cohesion: 20 kPa,
+  friction angle: 30 deg, dilation angle: 10 deg, hardening modulus: 500 kPa}
+stages:
+  - {stress xx: -40, stress yy: -25, stress zz: -30, consolidation: yes, steps: 3}
+  - {strain xx: -0.004, stress yy: -25, stress zz: -30, strain xy: 0.001, steps: 5}
+  - {strain xx: -0.001, stress yy: -45, stress zz: -30, strain xy: -0.003, stress yz: 4, steps: 6}
+"""
+SLOW = """material: {model: viscoelastic, density: 2 t/m3, shear modulus: 100 MPa, bulk modulus: 200 MPa,
+  relaxing share: 0.35, relaxation time: 1.7 s}
+stages:
+  - {strain xy: 0.003, strain xx: -0.001, stress zz: 30 kPa, steps: 3, duration: 0.4 s}
+  - {strain xy: 0.001, stress xx: -20 kPa, steps: 4, duration: 2.3 s}
+"""
+FIT = """units: {length: m, force: kN, time: s}
+material: {model: j2, density: 2 t/m3, Young modulus: 2e4, Poisson ratio: 0.3, yield stress: 40}
+test: {kind: uniaxial, strain: 0.01, cycles: 1, steps: 12}
+against: curve.csv
+fit: {Young modulus: {from: 1e4, to: 1e5}, yield stress: {from: 20, to: 90}}
+"""
+CURVE = "strain,stress\n" + "".join(f"{0.0007 * n:.4f},{min(26e3 * 0.0007 * n, 57 + n):.6g}\n" for n in range(14))
+FILES.update({"stages.yaml": STAGES, "slow.yaml": SLOW, "fit.yaml": FIT, "curve.csv": CURVE})
