@@ -166,6 +166,28 @@ static void half_state(const void *formulation, double *const *u, double *const 
   for (int k = 0; k < 3; ++k) state[k] = factor * y[k];
 }
 
+/** Returns the elastic strain of a bond of laws. Of a bond between two materials the strains of both laws count by the
+ *  tension that each carries: one of them may have torn before the other. */
+static double bond_elastic_strain(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond,
+                                  double stretch)
+{
+  const int64_t other = bond->neighbour / SLICE;
+  const int32_t *block = b->particles->block;
+  const double share = bond_share(b, slice, other), lateral = bond_lateral(b, slice * SLICE + lane, bond);
+  const double constant[] = {share * b->per_stress[block[slice]], (1 - share) * b->per_stress[block[other]]};
+  int64_t rows[2];
+  bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
+  if (rows[0] == rows[1]) return points_elastic_strain(b->points, rows[0], stretch, lateral, 0);
+  double tension = 0, sum = 0;
+  for (int end = 0; end < 2; ++end) {
+    if (!(constant[end] > 0)) continue;
+    const double own = constant[end] * points_try(b->points, rows[end], stretch, lateral, NULL);
+    tension += own;
+    sum += own * points_elastic_strain(b->points, rows[end], stretch, lateral, 0);
+  }
+  return tension != 0 ? sum / tension : 0;
+}
+
 static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                         StoredEnergy *energy)
 {
@@ -180,12 +202,8 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
     along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
   }
   const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
-  int64_t rows[2];
-  if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
-  if (b->bonds && !(bond_share(b, slice, bond.neighbour / SLICE) > 0)) rows[0] = rows[1];
-  const double lateral = bond_lateral(b, place, &bond);
   const double elastic =
-      b->bonds ? bond.length * points_elastic_strain(b->points, rows[0], stretch, lateral, 0) : length - bond.length;
+      b->bonds ? bond.length * bond_elastic_strain(b, slice, slot, lane, &bond, stretch) : length - bond.length;
   const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }

@@ -180,7 +180,7 @@ def run_verb(options, folder, number):
         name = os.path.basename(path)
         groups.update({f"{name}, {key}": g for key, g in outputs.groups_of_table(path, name).items()})
     names, figures = figures_of(groups)
-    lines, numbers = words_of(done.stdout + done.stderr)
+    lines, numbers = words_of(re.sub(" +", " ", done.stdout + done.stderr))  # columns are as wide as their numbers
     return Outcome(done.returncode, lines, figures + [fold(numbers, [1e-6] * len(numbers))], names + [WORDS])
 
 
