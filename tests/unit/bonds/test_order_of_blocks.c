@@ -8,14 +8,23 @@ static const char *const blocks[] = {
 static const int orders[][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}};
 
 static const struct {
-  const char *formulation, *law;
+  const char *formulation, *law, *failure;
 } kinds[] = {
-    {"bond-based", "model: bilinear-softening, tensile strength: 20, fracture energy: 0.05"},
-    {"hybrid", "model: mazars, Poisson ratio: 0.2, tensile strength: 20, fracture energy: 0.05"},
-    {"micropolar", "model: link-damage, Poisson ratio: 0.2, tensile stretch: 2e-3, fracture energy: 0.05"},
-    {"ordinary", "model: elastic, Poisson ratio: 0.2"},
-    {"correspondence", "model: elastic, Poisson ratio: 0.2"},
+    {"bond-based", "model: bilinear-softening, tensile strength: 20, fracture energy: 0.05", ""},
+    {"hybrid", "model: mazars, Poisson ratio: 0.2, tensile strength: 20, fracture energy: 0.05", ""},
+    {"micropolar", "model: link-damage, Poisson ratio: 0.2, tensile stretch: 2e-3, fracture energy: 0.05", ""},
+    {"ordinary", "model: elastic, Poisson ratio: 0.2", ""},
+    {"correspondence", "model: elastic, Poisson ratio: 0.2", ""},
+    {"bond-based", "model: elastic-1d", "failure: {critical stretch: 0.004}\n"},
+    {"ordinary", "model: elastic, Poisson ratio: 0.2", "failure: {critical stretch: 0.004}\n"},
+    {"correspondence", "model: elastic, Poisson ratio: 0.2",
+     "failure: {criterion: critical bond energy, fracture energy: 0.02}\n"},
+    {"hybrid", "model: elastic, Poisson ratio: 0.2",
+     "failure: {criterion: critical bond stress, bond tensile strength: 40}\n"},
+    {"micropolar", "model: elastic, Poisson ratio: 0.2",
+     "failure: {criterion: critical bond energy, fracture energy: 0.02}\n"},
 };
+enum { SOFTENING = 3, BREAKING = 5 }; /* before the number of kinds that soften; kinds from here on break */
 
 static breccia_model *body(int kind, const int order[3])
 {
@@ -28,8 +37,9 @@ static breccia_model *body(int kind, const int order[3])
       "peridynamics: {formulation: %s, space: plane strain, horizon: 0.2915}\n"
       "loads: [{on: {block: b}, initial velocity: {translation: [-0.5, 0.1]}}, {on: {block: d}, initial "
       "velocity: {translation: [0.5, -0.2]}}]\n"
-      "solve: {explicit: {time step: 1e-4, steps: 60}}\n",
-      law, law, law, blocks[order[0]], blocks[order[1]], blocks[order[2]], kinds[kind].formulation);
+      "solve: {explicit: {time step: 1e-4, steps: 60}}\n%s",
+      law, law, law, blocks[order[0]], blocks[order[1]], blocks[order[2]], kinds[kind].formulation,
+      kinds[kind].failure);
 }
 
 /** The particle of another model at the position of a particle. */
@@ -47,19 +57,22 @@ static void the_order_of_blocks_changes_nothing(void **state)
     step_surely(first, INT64_MAX);
     const Particles *p = first->domain.particles;
     const Energy e = solver_energy(&first->solver);
-    assert_true(k > 2 || e.dissipated > 1e-4 * e.external + 1e-9); /* laws have softened */
+    if (k < SOFTENING) assert_true(e.dissipated > 1e-3);
+    if (k >= BREAKING) assert_true(first->domain.broken_count > 50 && e.fracture > 1e-3);
+    /* What points keep as they lose members is found by iteration. */
+    const double near = k < BREAKING ? 1e-12 : 1e-8;
     for (int o = 1; o < 3; ++o) {
       breccia_model *other = body(k, orders[o]);
       step_surely(other, INT64_MAX);
       const Particles *q = other->domain.particles;
       for (int64_t n = 0; n < p->count; ++n) {
         const int32_t i = p->place_of[n], j = twin_of(p, i, q);
-        for (int c = 0; c < 2; ++c) assert_near(q->displacement[c][j], p->displacement[c][i], 1e-12);
+        for (int c = 0; c < 2; ++c) assert_near(q->displacement[c][j], p->displacement[c][i], near);
       }
       const Energy f = solver_energy(&other->solver);
-      assert_near(f.fracture, e.fracture, 1e-12);
-      assert_near(f.dissipated, e.dissipated, 1e-12);
-      assert_near(f.stored, e.stored, 1e-12);
+      assert_near(f.fracture, e.fracture, near);
+      assert_near(f.dissipated, e.dissipated, near);
+      assert_near(f.stored, e.stored, near);
       breccia_model_destroy(&other);
     }
     breccia_model_destroy(&first);
