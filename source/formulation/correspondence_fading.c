@@ -5,8 +5,8 @@
  *   f = least so far of  s : e / e : C_0 : e  times  min(1, w_most / w),
  * the stiffness that the point has left (C_0 the law's first moduli), and what the control may store: w = sum weight z . C z / 2, z = eta - G xi,
  * is what it would store as it was, w_most a share of the energy with which the law begins to soften. The second factor is for points that a
- * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families in which a
- * factor has fallen before.
+ * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families one of whose
+ * members has a neighbour whose factor has fallen before.
  *
  * If control fades with yielding and the influence decreases with distance, a point whose law yields without softening
  * takes the smaller of s : e / e : C_0 : e and
@@ -27,8 +27,9 @@ static const double most_stored = 0.125;  /* share of the energy at the onset of
 static const double most_resisted = 0.05; /* share of the shear stress of a yielding law that control may carry */
 static const double roundings = 1e-6;     /* loss of stiffness below which a point counts as intact */
 
-/** Of a slice. */
-enum { TRIED = 1, SOFTENED = 2, BESIDE = 4 }; /* a factor was below 1 in some trial; is below 1; is so of a neighbour */
+/** Marks of slices and of places: a factor was below 1 in some trial; is below 1; is so of a neighbour; is so of a
+ *  neighbour's neighbour. */
+enum { TRIED = 1, SOFTENED = 2, BESIDE = 4, NEAR = 8 };
 
 struct Fading {
   double *used,
@@ -36,6 +37,7 @@ struct Fading {
   double *found;    /* [places] that step's own, for the one after it */
   double *whole[6]; /* C where nothing has faded; NULL of a uniform control */
   uint8_t *mark;    /* [slices] where it is 0, all factors are 1 */
+  uint8_t *near;    /* [places] SOFTENED, BESIDE, NEAR */
   bool softened;    /* some are below 1 */
 };
 
@@ -118,7 +120,8 @@ int correspondence_create_fading(Correspondence *c, Error *error)
   f->next = places_array(places, "zero-energy control", error);
   f->found = places_array(places, "zero-energy control", error);
   f->mark = memory_zeroed((size_t)c->particles->slices, 1, "zero-energy control", error);
-  bool failed = !f->used || !f->next || !f->found || !f->mark;
+  f->near = memory_zeroed((size_t)places, 1, "zero-energy control", error);
+  bool failed = !f->used || !f->next || !f->found || !f->mark || !f->near;
   for (int k = 0; k < hold_components(c->control); ++k) {
     failed |= !(f->whole[k] = places_array(places, "zero-energy control", error));
     if (f->whole[k]) memcpy(f->whole[k], c->hold[k], sizeof(double) * (size_t)places);
@@ -136,6 +139,7 @@ void correspondence_destroy_fading(Correspondence *c)
   places_free(&f->found);
   for (int k = 0; k < 6; ++k) places_free(&f->whole[k]);
   free(f->mark);
+  free(f->near);
   free(f);
   c->fading = NULL;
 }
@@ -144,7 +148,7 @@ size_t correspondence_fading_bytes(const Correspondence *c)
 {
   if (!c->fading) return 0;
   const size_t numbers = 3 + (c->fading->whole[0] ? (size_t)hold_components(c->widest) : 0);
-  return (size_t)c->particles->places * numbers * sizeof(double) + (size_t)c->particles->slices;
+  return (size_t)c->particles->places * (numbers * sizeof(double) + 1) + (size_t)c->particles->slices;
 }
 
 /** C of a slice's places, by factors. */
@@ -241,6 +245,14 @@ LANES_INLINE Lanes resisting_share(const Material *m, const Sweep *sweep, int64_
   return lanes_choose(bound, lanes_root(most / lanes_choose(bound, held, lanes_set(1))), lanes_set(1));
 }
 
+/** Places near which a factor has fallen before. */
+LANES_INLINE LaneMask fading_is_near(const Fading *f, int64_t place)
+{
+  LaneMask near = {0};
+  for (int lane = 0; lane < LANES; ++lane) near[lane] = f->near[place + lane] ? -1 : 0;
+  return near;
+}
+
 BRECCIA_CLONES
 static void fade(const Correspondence *c, const Sweep *sweep)
 {
@@ -264,7 +276,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
         const Lanes stored = stored_whole(c, sweep->displacement, place, sweep->carry + here);
         const Lanes resisting = flows ? lanes_least(left, resisting_share(m, sweep, here, stored)) : left;
         left = lanes_choose(left < one, resisting, left);
-        if (cracked) left *= lanes_choose(stored > most, most / stored, one);
+        if (cracked) left *= lanes_choose((stored > most) & fading_is_near(f, place), most / stored, one);
       }
       lanes_store(f->found + place, lanes_least(lanes_load(f->next + place), left));
     }
@@ -289,31 +301,41 @@ static void set_control(Correspondence *c, bool softened)
   for (int64_t slice = 0; slice < c->particles->slices; ++slice) set_hold(c, slice, c->fading->used);
 }
 
-/** Marks a slice in which factors have fallen, and those of all neighbours, whether their bonds have broken or not: a restart marks the same. */
-static void mark_softened(const Correspondence *c, int64_t slice)
+/** Marks the family of a place, whether its bonds have broken or not: a restart marks the same.
+ *  @param[in] rings  2: the families of its members, too */
+static void fading_mark_family(const Correspondence *c, int64_t place, int rings)
 {
   const Family *f = c->family;
-  uint8_t *mark = c->fading->mark;
-  mark[slice] |= SOFTENED;
-  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      const int64_t there = slot < f->stored[slice] ? family_base(f, slice, slot) + lane
-                                                    : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
-      if (there >= 0 && there < c->particles->places) /* lanes without a bond may lead beyond the lattice */
-        mark[there / SLICE] |= BESIDE;
-    }
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    const int64_t there = slot < f->stored[slice] ? family_base(f, slice, slot) + lane
+                                                  : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+    if (there < 0 || there >= c->particles->places) continue; /* lanes without a bond may lead beyond the lattice */
+    const uint8_t ring = rings > 1 ? BESIDE : NEAR;
+    const bool known = c->fading->near[there] & ring;
+    c->fading->near[there] |= ring;
+    c->fading->mark[there / SLICE] |= BESIDE;
+    if (rings > 1 && !known) fading_mark_family(c, there, rings - 1);
+  }
 }
 
-/** Marks slices whose factors have fallen. @return whether any have, now or before */
+/** Marks a place whose factor has fallen, and those near it. */
+static void fading_mark_softened(const Correspondence *c, int64_t place)
+{
+  c->fading->near[place] |= SOFTENED;
+  c->fading->mark[place / SLICE] |= SOFTENED;
+  fading_mark_family(c, place, 2);
+}
+
+/** Marks places whose factors have fallen. @return whether any have, now or before */
 static bool find_softened(const Correspondence *c)
 {
   const Fading *f = c->fading;
   bool softened = false;
   for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
-    bool fallen = false;
-    for (int64_t i = slice * SLICE; f->mark[slice] && !(f->mark[slice] & SOFTENED) && i < (slice + 1) * SLICE; ++i)
-      fallen |= f->next[i] < 1;
-    if (fallen) mark_softened(c, slice);
+    for (int64_t i = slice * SLICE; f->mark[slice] && i < (slice + 1) * SLICE; ++i)
+      if (f->next[i] < 1 && !(f->near[i] & SOFTENED)) fading_mark_softened(c, i);
     softened |= (f->mark[slice] & SOFTENED) != 0;
   }
   return softened;

@@ -3,6 +3,7 @@
 #include "base/linear.h"
 #include "base/team.h"
 #include "solver/coarse_element.h"
+#include "solver/coarse_frame.h"
 #include "solver/factors.h"
 #include <limits.h>
 #include <math.h>
@@ -23,6 +24,8 @@ static const double width = 4.0 / 3, added = 1e-6;
 struct CoarseGrid {
   const Domain *domain;
   int axes; /* of unknowns at a corner */
+  bool any_pose;
+  double centre[3], frame[9]; /* its axes, a unit vector in each row, through a point */
   int elements[3], points[3];
   double low[3], size[3];
   int64_t element_count;      /* with particles */
@@ -44,12 +47,20 @@ struct CoarseGrid {
 
 /* ---- laying it ---- */
 
+/** Coordinate of a position along an axis of the grid. */
+static double along_axis(const CoarseGrid *g, int axis, const double position[3])
+{
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += g->frame[3 * axis + k] * (position[k] - g->centre[k]);
+  return sum;
+}
+
 /** Element of a particle, and where in it: 0 to 1 along each axis. */
 static int64_t locate(const CoarseGrid *g, const double position[3], double at[3])
 {
   int64_t number = 0;
   for (int k = 2; k >= 0; --k) {
-    const double x = (position[k] - g->low[k]) / g->size[k];
+    const double x = (along_axis(g, k, position) - g->low[k]) / g->size[k];
     int n = (int)x;
     if (n >= g->elements[k]) n = g->elements[k] - 1;
     if (n < 0) n = 0;
@@ -78,7 +89,7 @@ static double divide(CoarseGrid *g, const double high[3], double size)
 {
   double count = 1;
   for (int k = 0; k < 3; ++k) {
-    const double extent = high[k] - g->low[k], number = fmax(1, floor(extent / size));
+    const double extent = high[k] - g->low[k], number = fmax(1, floor(extent / size + (g->any_pose ? 1e-9 : 0)));
     g->elements[k] = (int)fmin(number, INT_MAX - 1);
     g->points[k] = g->elements[k] + 1;
     g->size[k] = extent > 1e-6 * size ? extent / g->elements[k] : size;
@@ -119,11 +130,29 @@ static bool mark_elements(CoarseGrid *g, Error *error)
   return true;
 }
 
+/** Bounds of the body along the axes of the grid. */
+static void find_bounds(CoarseGrid *g, double high[3])
+{
+  const Particles *p = g->domain->particles;
+  for (int k = 0; k < 3; ++k) {
+    g->low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double position[3] = {p->position[0][i], p->position[1][i], p->position[2][i]};
+    for (int k = 0; k < 3; ++k) {
+      g->low[k] = fmin(g->low[k], along_axis(g, k, position));
+      high[k] = fmax(high[k], along_axis(g, k, position));
+    }
+  }
+}
+
 /** The narrowest elements with which the grid has few enough corners. */
 static bool choose_elements(CoarseGrid *g, Error *error)
 {
   double high[3], size = width * g->domain->family.horizon;
-  particles_bounds(g->domain->particles, g->low, high);
+  find_bounds(g, high);
   for (;; size *= 1.1) {
     if (divide(g, high, size) > MOST_ELEMENTS) continue;
     if (!mark_elements(g, error) || !mark_corners(g, NULL, &g->corner_count, error)) return false;
@@ -164,12 +193,15 @@ static bool number_corners(CoarseGrid *g, Error *error)
   return well;
 }
 
-CoarseGrid *coarse_grid_create(const Domain *d, Error *error)
+CoarseGrid *coarse_grid_create(const Domain *d, bool any_pose, Error *error)
 {
   CoarseGrid *g = memory_zeroed(1, sizeof *g, "coarse grid", error);
   if (!g) return NULL;
   g->domain = d;
   g->axes = d->body.dimensions;
+  g->any_pose = any_pose;
+  for (int k = 0; k < 9; ++k) g->frame[k] = k % 4 == 0;
+  if (any_pose) coarse_frame_find(d->particles, g->axes, g->centre, g->frame);
   g->factors = factors_create("coarse grid", error);
   if (!g->factors || !choose_elements(g, error) || !sort_particles(g, error) || !number_corners(g, error))
     coarse_grid_destroy(&g);
@@ -226,26 +258,94 @@ static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double sti
   if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
 }
 
-static void add_elements(CoarseGrid *g, double factor, bool linearised)
+/** Adds the moduli of the particles of an element, times their volumes over its own. */
+static void add_moduli(const CoarseGrid *g, int64_t e, double factor, bool linearised, ElementModuli *sum)
 {
-  const int size = g->axes << g->axes;
+  for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
+    const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
+    sum->lame += factor * g->domain->particles->volume[g->place[n]] * moduli.lame;
+    sum->shear += factor * g->domain->particles->volume[g->place[n]] * moduli.shear;
+  }
+}
+
+/** Adds the moduli of the particles of an element to its corners, by their shares there: a particle on the border of two
+ *  elements counts alike in both, to whichever it belongs. */
+static void add_moduli_at_corners(const CoarseGrid *g, int64_t e, double factor, bool linearised, ElementModuli *corner)
+{
+  for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
+    double at[3], share[CORNERS];
+    const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
+    locate_place(g, g->place[n], at);
+    interpolate(g->axes, at, share);
+    for (int c = 0; c < 1 << g->axes; ++c) {
+      const double weight = factor * g->domain->particles->volume[g->place[n]] * share[c];
+      corner[g->corner[e][c]].lame += weight * moduli.lame;
+      corner[g->corner[e][c]].shear += weight * moduli.shear;
+    }
+  }
+}
+
+/** Moduli of an element from those at its corners, each of which is shared by the elements that touch it. */
+static ElementModuli moduli_of_corners(const CoarseGrid *g, int64_t e, const ElementModuli *corner)
+{
+  ElementModuli sum = {0};
+  for (int c = 0; c < 1 << g->axes; ++c) {
+    const int32_t at = g->corner[e][c];
+    int touching = 0;
+    for (int other = 0; other < CORNERS; ++other) touching += g->touching[at][other] >= 0;
+    sum.lame += corner[at].lame / touching;
+    sum.shear += corner[at].shear / touching;
+  }
+  return sum;
+}
+
+/** Component (r, s) of a block of the stiffness along the axes of the deck.
+ *  @param[in] block  [axes][axes] along the axes of the grid */
+static double turn_back(const CoarseGrid *g, const double block[9], int r, int s)
+{
+  double sum = 0;
+  for (int k = 0; k < g->axes; ++k)
+    for (int l = 0; l < g->axes; ++l) sum += g->frame[3 * k + r] * block[3 * k + l] * g->frame[3 * l + s];
+  return sum;
+}
+
+static void add_element(CoarseGrid *g, int64_t e, const ElementStiffness *unit, ElementModuli moduli)
+{
+  const int axes = g->axes;
+  for (int a = 0; a < 1 << axes; ++a)
+    for (int b = 0; b < 1 << axes; ++b) {
+      double block[9] = {0};
+      for (int r = 0; r < axes; ++r)
+        for (int s = 0; s < axes; ++s)
+          block[3 * r + s] = moduli.lame * unit->lame[a * axes + r][b * axes + s] +
+                             moduli.shear * unit->shear[a * axes + r][b * axes + s];
+      for (int r = 0; r < axes; ++r)
+        for (int s = 0; s < axes; ++s)
+          add(g, e, a, r, b, s, g->any_pose ? turn_back(g, block, r, s) : block[3 * r + s]);
+    }
+}
+
+static int add_elements(CoarseGrid *g, double factor, bool linearised, Error *error)
+{
   ElementStiffness unit;
   double volume = 1;
+  ElementModuli *corner =
+      g->any_pose ? memory_zeroed((size_t)g->corner_count, sizeof *corner, "coarse grid", error) : NULL;
+  if (g->any_pose && !corner) return BRECCIA_FAILURE;
   for (int k = 0; k < g->axes; ++k) volume *= g->size[k];
   element_stiffness(g->axes, g->size, &unit);
+  for (int64_t e = 0; e < g->element_count && corner; ++e)
+    add_moduli_at_corners(g, e, factor / volume, linearised, corner);
   for (int64_t e = 0; e < g->element_count; ++e) {
-    double lame = 0, shear = 0;
-    for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
-      const double weight = factor * g->domain->particles->volume[g->place[n]] / volume;
-      const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
-      lame += weight * moduli.lame;
-      shear += weight * moduli.shear;
-    }
-    for (int a = 0; a < size; ++a)
-      for (int b = 0; b < size; ++b)
-        add(g, e, a / g->axes, a % g->axes, b / g->axes, b % g->axes,
-            lame * unit.lame[a][b] + shear * unit.shear[a][b]);
+    ElementModuli moduli = {0};
+    if (corner)
+      moduli = moduli_of_corners(g, e, corner);
+    else
+      add_moduli(g, e, factor / volume, linearised, &moduli);
+    add_element(g, e, &unit, moduli);
   }
+  free(corner);
+  return BRECCIA_OK;
 }
 
 /** A spring from a point of the grid to the ground. */
@@ -400,9 +500,9 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
   g->turning = turning;
-  add_elements(g, 1 + stiffness_share, linearised);
+  int status = add_elements(g, 1 + stiffness_share, linearised, error);
   unknowns_each_row(u, add_support, g);
-  int status = add_springs(g, u, mass_factor, error);
+  if (!status) status = add_springs(g, u, mass_factor, error);
   if (!status) status = coarse_grid_factor(g, error);
   free(g->stiffness);
   g->stiffness = NULL;

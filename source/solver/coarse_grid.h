@@ -11,8 +11,10 @@
 
 typedef struct CoarseGrid CoarseGrid;
 
-/** Lays the grid over the body: elements at least 4/3 horizons wide, and so wide that it has few corners. */
-CoarseGrid *coarse_grid_create(const Domain *domain, Error *error);
+/** Lays the grid over the body: elements at least 4/3 horizons wide, and so wide that it has few corners.
+ *  @param[in] any_pose  its axes turn with the body (coarse_frame.h), and what it answers is the same for each pose, up to
+ *                       round-off; else they are those of the deck. For bodies without rotations */
+CoarseGrid *coarse_grid_create(const Domain *domain, bool any_pose, Error *error);
 void coarse_grid_destroy(CoarseGrid **grid);
 
 /** Assembles and factors the equations of the grid.

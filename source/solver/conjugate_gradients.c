@@ -36,7 +36,7 @@ static int create(LinearSolver *s, Error *error)
 {
   const Particles *p = s->domain->particles;
   Gradients *g = s->own = memory_zeroed(1, sizeof *g, "conjugate gradients", error);
-  const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error) ||
+  const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, false, error) ||
                       !vectors_make(g->rest, p, "conjugate gradients", error) ||
                       !vectors_make(g->direction, p, "conjugate gradients", error) ||
                       !vectors_make(g->product, p, "conjugate gradients", error);

@@ -41,7 +41,7 @@ static int create(LinearSolver *s, Error *error)
 {
   Residuals *g = s->own = memory_zeroed(1, sizeof *g, "minimal residuals", error);
   const Particles *p = s->domain->particles;
-  const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error) ||
+  const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, false, error) ||
                       !vectors_make(g->scaled, p, "minimal residuals", error) ||
                       !vectors_make(g->basis[0], p, "minimal residuals", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;

@@ -11,7 +11,7 @@ int descent_create(Descent *d, const Newton *n, Error *error)
   bool made = vectors_make(d->before, p, "descent", error) && vectors_make(d->room, p, "descent", error);
   for (int k = 0; k < DESCENT_PAIRS && made; ++k)
     made = vectors_make(d->step[k], p, "descent", error) && vectors_make(d->fall[k], p, "descent", error);
-  return made ? preconditioner_create(&d->preconditioner, n->domain, error) : BRECCIA_FAILURE;
+  return made ? preconditioner_create(&d->preconditioner, n->domain, false, error) : BRECCIA_FAILURE;
 }
 
 size_t descent_bytes(const Descent *d, const Particles *p)

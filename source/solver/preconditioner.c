@@ -1,17 +1,21 @@
 #include "solver/preconditioner.h"
 
 #include "base/team.h"
+#include "solver/coarse_frame.h"
 #include <math.h>
 #include <string.h>
 
 enum { PROBES = 3 };
 
-int preconditioner_create(Preconditioner *m, const Domain *d, Error *error)
+int preconditioner_create(Preconditioner *m, const Domain *d, bool any_pose, Error *error)
 {
   const Particles *p = d->particles;
+  double axes[9];
+  m->any_pose = any_pose;
+  if (any_pose) coarse_frame_find(p, d->body.dimensions, m->centre, axes);
   m->diagonal = places_array(p->places, "preconditioner", error);
   if (m->diagonal && p->rotary) m->turning = places_array(p->places, "preconditioner", error);
-  m->grid = m->diagonal && (m->turning || !p->rotary) ? coarse_grid_create(d, error) : NULL;
+  m->grid = m->diagonal && (m->turning || !p->rotary) ? coarse_grid_create(d, any_pose && !p->rotary, error) : NULL;
   return m->grid ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -29,6 +33,28 @@ size_t preconditioner_bytes(const Preconditioner *m)
 
 /* ---- the diagonal ---- */
 
+double preconditioner_probe(const Preconditioner *m, const LinearSolver *s, double phase, int row, int64_t place)
+{
+  const Particles *p = s->domain->particles;
+  const double waves = 1000; /* radians over a horizon: neighbours have nothing in common, and round-off is small */
+  double from[3], square = 0;
+  for (int k = 0; k < 3; ++k) {
+    from[k] = p->position[k][place] - m->centre[k];
+    square += from[k] * from[k];
+  }
+  const double r = sqrt(square), size = sin(waves * r / s->domain->family.horizon + phase);
+  if (p->number[place] < 0) return 0;
+  if (row >= ROTATION && p->motions == 4) return size; /* about the normal of the plane */
+  return r > 0 ? size * from[row % 3] / r : 0;
+}
+
+typedef struct Probing {
+  Preconditioner *m;
+  LinearSolver *solver;
+  double *const *v, *const *kv;
+  int probe;
+} Probing;
+
 /** 1 or -1, as if at random, of a row of motion of a probe at a place (SplitMix64). */
 static double sign(int probe, int row, int64_t place)
 {
@@ -40,26 +66,22 @@ static double sign(int probe, int row, int64_t place)
   return x >> 63 ? 1 : -1;
 }
 
-typedef struct Probing {
-  const LinearSolver *solver;
-  double *const *v, *const *kv;
-  double *diagonal, *turning;
-  int probe;
-} Probing;
-
 /** A probe at a place: rotations as large as displacements. */
-static double probe_of(const LinearSolver *s, int probe, int row, int64_t place)
+static double probe_of(const Probing *p, int probe, int row, int64_t place)
 {
-  return sign(probe, row, place) / unknowns_length(&s->unknowns, row);
+  if (p->solver->domain->particles->number[place] < 0) return 0;
+  const double size = p->m->any_pose ? preconditioner_probe(p->m, p->solver, 2 * acos(-1) * probe / PROBES, row, place)
+                                     : sign(probe, row, place);
+  return size / unknowns_length(&p->solver->unknowns, row);
 }
 
-static void fill_with_signs(void *context, int64_t b)
+static void fill_with_probe(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
   const Particles *of = p->solver->domain->particles;
   for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
-    for (int k = 0; k < of->motions; ++k) p->v[k][i] = of->number[i] < 0 ? 0 : probe_of(p->solver, p->probe, k, i);
+    for (int k = 0; k < of->motions; ++k) p->v[k][i] = probe_of(p, p->probe, k, i);
 }
 
 static void add_products(void *context, int64_t b)
@@ -67,8 +89,8 @@ static void add_products(void *context, int64_t b)
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
   for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i) {
-    for (int k = 0; k < 3; ++k) p->diagonal[i] += p->v[k][i] * p->kv[k][i];
-    for (int k = ROTATION; k < p->solver->domain->particles->motions; ++k) p->turning[i] += p->v[k][i] * p->kv[k][i];
+    for (int k = 0; k < 3; ++k) p->m->diagonal[i] += p->v[k][i] * p->kv[k][i];
+    for (int k = ROTATION; k < p->solver->domain->particles->motions; ++k) p->m->turning[i] += p->v[k][i] * p->kv[k][i];
   }
 }
 
@@ -79,12 +101,19 @@ static double guess(const Domain *d, int64_t i)
   return d->particles->volume[i] * (m->bulk + 4 * m->shear / 3) * fmax(1, family_count(&d->family, (int32_t)i));
 }
 
+/** Squares of all probes at a place, summed over rows of motion. */
+static double squares_of_probes(const Preconditioner *m, int rows)
+{
+  return m->any_pose ? PROBES / 2.0 : PROBES * rows;
+}
+
 /** Of rotations the least is a share of what the displacements have, at the radius of gyration: of links that do not bend it is nothing, and they stay. */
 static void finish_turning(Preconditioner *m, const LinearSolver *s)
 {
   const Domain *d = s->domain;
-  const double length = s->unknowns.length, share = length * length / (PROBES * (d->particles->motions - ROTATION)),
-               least = 0.2, nothing = 1e-10;
+  const double length = s->unknowns.length,
+               share = length * length / squares_of_probes(m, d->particles->motions - ROTATION), least = 0.2,
+               nothing = 1e-10;
   double found = 0, expected = 0;
   for (int64_t i = 0; i < d->particles->places; ++i) {
     if (isinf(m->diagonal[i])) continue;
@@ -98,32 +127,48 @@ static void finish_turning(Preconditioner *m, const LinearSolver *s)
                         : fmax(m->turning[i] * share, least * factor * length * length * m->diagonal[i]);
 }
 
-/** The mean of v K v over random signs v is the diagonal (Bekas, Kokiopoulou and Saad 2007, Appl. Numer. Math. 57, 1214): what stands beside it averages
- *  out, and is small where families are large. Whatever the signs say, the diagonal is not less than a share of what its particle's family makes expected:
- *  in what softens K is not positive, but M must be. */
+/** Returns the share of a probe at a place that is left in the unknowns, at least a quarter: the rest is held. */
+static double free_share(const Probing *p, int64_t place)
+{
+  const double least = 0.25;
+  double whole = 0, left = 0;
+  for (int k = 0; k < ROTATION; ++k) {
+    const double probe = probe_of(p, p->probe, k, place);
+    whole += probe * probe;
+    left += p->v[k][place] * p->v[k][place];
+  }
+  return whole > 0 ? fmax(least, left / whole) : 1;
+}
+
+/** The mean of v K v over random vectors v is the diagonal (Bekas, Kokiopoulou and Saad 2007, Appl. Numer. Math. 57,
+ *  1214): what stands beside it averages out, and is small where families are large. Whatever they say, the diagonal is
+ *  not less than a share of what its particle's family makes expected: in what softens K is not positive, but M must
+ *  be. */
 static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
 {
   const Domain *d = s->domain;
   const int64_t places = d->particles->places;
-  const double share = 1.0 / (PROBES * d->body.dimensions), least = 0.2;
+  const double share = 1 / squares_of_probes(m, d->body.dimensions), least = 0.2;
   double cross[2] = {0}, found = 0, expected = 0;
   memset(m->diagonal, 0, sizeof(double) * (size_t)places);
   if (m->turning) memset(m->turning, 0, sizeof(double) * (size_t)places);
   for (int probe = 0; probe < PROBES; ++probe) {
-    Probing p = {s, v, kv, m->diagonal, m->turning, probe};
-    team_each(d->batch_count, fill_with_signs, &p);
+    Probing p = {m, s, v, kv, probe};
+    team_each(d->batch_count, fill_with_probe, &p);
     linear_solver_apply(s, v, kv);
     unknowns_clear_rest(&s->unknowns, v);
     team_each(d->batch_count, add_products, &p);
     for (int64_t i = 0; i < places && probe < 2; ++i)
-      for (int k = 0; k < d->particles->motions; ++k) cross[probe] += kv[k][i] * probe_of(s, 1 - probe, k, i);
+      for (int k = 0; k < d->particles->motions; ++k) cross[probe] += kv[k][i] * probe_of(&p, 1 - probe, k, i);
   }
+  Probing last = {m, s, v, kv, PROBES - 1};
   double size = 0;
   for (int64_t i = 0; i < places; ++i) {
     if (d->particles->number[i] < 0) continue;
+    size += fabs(m->diagonal[i]);
+    if (m->any_pose) m->diagonal[i] /= free_share(&last, i);
     found += m->diagonal[i] * share;
     expected += guess(d, i);
-    size += fabs(m->diagonal[i]);
   }
   m->is_symmetric = fabs(cross[0] - cross[1]) <= 1e-9 * size;
   const double factor = found > 0 ? found / expected : 1;
@@ -173,6 +218,6 @@ void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double
                           double *const v[MOTIONS])
 {
   team_each(s->domain->batch_count, divide_batch, &(Scaling){m, s->domain, f, v});
-  coarse_grid_correct(m->grid, f, v);
+  if (!m->any_pose || !m->turning) coarse_grid_correct(m->grid, f, v);
   unknowns_clear_rest(&s->unknowns, v);
 }

@@ -13,10 +13,11 @@ static const double highest = 4 / 1.1;
 int relaxation_create(Relaxation *r, Newton *n, Error *error)
 {
   const Particles *p = n->domain->particles;
+  const bool any_pose = domain_bonds_may_soften(n->domain); /* see relaxation.h */
   r->prepared = NAN;
   n->linear.elastic = &r->elastic;
   const bool failed = elastic_step_create(&r->elastic, n->domain, error) ||
-                      preconditioner_create(&r->mass, n->domain, error) ||
+                      preconditioner_create(&r->mass, n->domain, any_pose, error) ||
                       !vectors_make(r->velocity, p, "dynamic relaxation", error) ||
                       !vectors_make(r->momentum, p, "dynamic relaxation", error) ||
                       !vectors_make(r->product, p, "dynamic relaxation", error);
@@ -79,7 +80,10 @@ static int prepare(Relaxation *r, Newton *n, Error *error)
   vectors_clear(n->change, n->domain->particles);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->count; ++i)
-      r->momentum[k][p->place_of[i]] = unknowns_length(&n->linear.unknowns, k) * (random_uniform(&seed) - 0.5);
+      r->momentum[k][p->place_of[i]] =
+          unknowns_length(&n->linear.unknowns, k) *
+          (r->mass.any_pose ? preconditioner_probe(&r->mass, &n->linear, 1, k, p->place_of[i])
+                            : random_uniform(&seed) - 0.5);
   unknowns_gather(&n->linear.unknowns, r->momentum);
   r->scale = answer_elastically(r, n, r->momentum, n->change, PROBES, 0) / highest;
   return BRECCIA_OK;

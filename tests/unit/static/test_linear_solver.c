@@ -224,7 +224,7 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
     const Particles *q = p.domain->particles;
     assert_true(vectors_make(x, q, "test", NULL) && vectors_make(y, q, "test", NULL));
     assert_true(vectors_make(mx, q, "test", NULL) && vectors_make(my, q, "test", NULL));
-    assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
+    assert_int_equal(preconditioner_create(&m, p.domain, false, NULL), 0);
     assert_int_equal(preconditioner_prepare(&m, &p.solver, x, y, NULL), 0);
     assert_true(m.is_symmetric);
     for (uint64_t seed = 1; seed < 6; ++seed) {
@@ -263,7 +263,7 @@ static void random_signs_tell_the_diagonal(void **state)
   assert_true(p.domain->batch_count > 4);
   assert_true(vectors_make(v, p.domain->particles, "test", NULL) &&
               vectors_make(kv, p.domain->particles, "test", NULL));
-  assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
+  assert_int_equal(preconditioner_create(&m, p.domain, false, NULL), 0);
   assert_int_equal(preconditioner_prepare(&m, &p.solver, v, kv, NULL), 0);
   for (int64_t i = 0; i < places; i += 17) {
     double sum = 0;

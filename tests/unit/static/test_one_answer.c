@@ -22,7 +22,7 @@ static const struct Pose {
              {"turned by 37 degrees", "length: m, force: N, time: s", 1, 1, 37, 1, 0},
              {"in another order", "length: m, force: N, time: s", 1, 1, 0, 1, 7},
              {"all at once", "length: mm, force: kN, time: ms", 1e-3, 1e3, 37, -1, 11}};
-enum { POSES = sizeof poses / sizeof *poses };
+enum { POSES = sizeof poses / sizeof *poses, TURNED = 3 };
 
 #define CONCRETE "density: 2400 kg/m3, Young modulus: 30 GPa"
 #define TENSION ", tensile strength: 3 MPa, fracture energy: 100 N/m"
@@ -33,23 +33,32 @@ static const struct Softening {
   const char *formulation, *law;
   /* Displacement of the grip over that of the first body. */
   double drawn;
+  /* Columns and rows of particles; 0: COLUMNS and ROWS. */
+  int columns, rows;
 } bodies[] = {
-    {"bond-based, space: plane stress", "model: bilinear-softening, " CONCRETE TENSION, 1},
-    {"bond-based, space: plane stress", "model: exponential-softening, " CONCRETE TENSION, 1},
-    {"bond-based, space: plane stress", "model: trilinear-softening, " CONCRETE TENSION, 1},
-    {"correspondence, space: plane strain", "model: mazars, " CONCRETE TENSION ", Poisson ratio: 0.2", 1},
-    {"correspondence, space: plane stress", PLASTIC, 1},
-    {"hybrid, space: plane strain", "model: mazars, " CONCRETE TENSION ", Poisson ratio: 0.2", 1},
-    {"hybrid, space: plane strain", PLASTIC, 1},
-    {"hybrid, space: plane stress", "model: exponential-softening, " CONCRETE TENSION, 1},
+    {"bond-based, space: plane stress", "model: bilinear-softening, " CONCRETE TENSION, 1, 0, 0},
+    {"bond-based, space: plane stress", "model: exponential-softening, " CONCRETE TENSION, 1, 0, 0},
+    {"bond-based, space: plane stress", "model: trilinear-softening, " CONCRETE TENSION, 1, 0, 0},
+    {"correspondence, space: plane strain", "model: mazars, " CONCRETE TENSION ", Poisson ratio: 0.2", 1, 0, 0},
+    {"correspondence, space: plane stress", PLASTIC, 1, 0, 0},
+    {"hybrid, space: plane strain", "model: mazars, " CONCRETE TENSION ", Poisson ratio: 0.2", 1, 0, 0},
+    {"hybrid, space: plane strain", PLASTIC, 1, 0, 0},
+    {"hybrid, space: plane stress", "model: exponential-softening, " CONCRETE TENSION, 1, 0, 0},
     {"micropolar, space: plane stress",
-     "model: link-damage, " CONCRETE ", Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 100 N/m", 2},
+     "model: link-damage, " CONCRETE ", Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 100 N/m", 2, 0, 0},
+    {"bond-based, space: plane stress", "model: exponential-softening, " CONCRETE TENSION, 2, 15, 20},
 };
 enum { BODIES = sizeof bodies / sizeof *bodies };
 
-/** Plate of COLUMNS by ROWS particles, notched on one side. */
-enum { COLUMNS = 7, ROWS = 9, GRIP = 2 };
+/** Plate of COLUMNS by ROWS particles, notched on one side over a quarter of its width. */
+enum { COLUMNS = 7, ROWS = 9, GRIP = 2, MOST_STEPS = 400, MOST_ROWS = 20 };
 static const double spacing = 0.02;
+
+/** Unit of time (s). */
+static double pose_second(const struct Pose *pose)
+{
+  return strstr(pose->units, "min") ? 60 : strstr(pose->units, "ms") ? 1e-3 : 1;
+}
 
 /** Turns a vector (m) as a pose has it. @param[out] v  (unit of the pose) */
 static void turn(const struct Pose *pose, double x, double y, double v[2])
@@ -60,26 +69,26 @@ static void turn(const struct Pose *pose, double x, double y, double v[2])
   v[1] = (s * x + c * y) / pose->length;
 }
 
-static void write_particles(const struct Pose *pose)
+static void write_particles(const struct Pose *pose, int columns, int rows)
 {
-  int order[COLUMNS * ROWS];
+  int order[MOST_ROWS * MOST_ROWS];
   uint64_t seed = pose->order;
   FILE *file = fopen(FILE_NAME, "w");
   assert_non_null(file);
-  for (int n = 0; n < COLUMNS * ROWS; ++n) order[n] = n;
-  for (int n = COLUMNS * ROWS - 1; n > 0 && pose->order; --n) {
+  for (int n = 0; n < columns * rows; ++n) order[n] = n;
+  for (int n = columns * rows - 1; n > 0 && pose->order; --n) {
     const int other = (int)(random_uniform(&seed) * (n + 1)), held = order[n];
     order[n] = order[other];
     order[other] = held;
   }
   fprintf(file, "x,y,volume,group\n");
-  for (int n = 0; n < COLUMNS * ROWS; ++n) {
-    const int column = order[n] % COLUMNS, row = order[n] / COLUMNS;
+  for (int n = 0; n < columns * rows; ++n) {
+    const int column = order[n] % columns, row = order[n] / columns;
     double at[2];
     turn(pose, spacing * column, spacing * row, at);
     fprintf(file, "%.17g,%.17g,%.17g,%s\n", at[0], at[1], spacing * spacing * 0.1 / pow(pose->length, 3),
             row < GRIP           ? "low"
-            : row >= ROWS - GRIP ? "high"
+            : row >= rows - GRIP ? "high"
                                  : "between");
   }
   fclose(file);
@@ -87,10 +96,11 @@ static void write_particles(const struct Pose *pose)
 
 static breccia_model *posed(const struct Softening *body, const struct Pose *pose)
 {
+  const int columns = body->columns ? body->columns : COLUMNS, rows = body->rows ? body->rows : ROWS;
   double from[2], to[2], pull[2];
-  write_particles(pose);
-  turn(pose, -spacing, (ROWS - 1) / 2.0 * spacing + spacing / 3, from);
-  turn(pose, 1.6 * spacing, (ROWS - 1) / 2.0 * spacing + spacing / 3, to);
+  write_particles(pose, columns, rows);
+  turn(pose, -spacing, (rows - 1) / 2.0 * spacing + spacing / 3, from);
+  turn(pose, (columns - 0.6) / 4 * spacing, (rows - 1) / 2.0 * spacing + spacing / 3, to);
   turn(pose, 1e-5 * body->drawn, 4e-5 * body->drawn, pull);
   breccia_model *m =
       model_of("units: {%s}\nmaterials: {m: {%s}}\n"
@@ -115,8 +125,11 @@ static double pull_of(const breccia_model *m, const struct Pose *pose)
   return hypot(sum.force[0], sum.force[1]) * pose->force;
 }
 
+/** Forces that move the grip (N). */
 typedef struct Answer {
-  double peak, last; /* force (N) */
+  double peak, last, at[MOST_STEPS]; /* at: after each step */
+  double time[MOST_STEPS];           /* of the end of each step, over that of the stage */
+  int steps;
 } Answer;
 
 static Answer answer_of(const struct Softening *body, const struct Pose *pose)
@@ -127,20 +140,32 @@ static Answer answer_of(const struct Softening *body, const struct Pose *pose)
     step_surely(m, 1);
     answer.last = pull_of(m, pose);
     answer.peak = larger_of(answer.peak, answer.last);
+    assert_true(answer.steps < MOST_STEPS);
+    answer.time[answer.steps] = m->solver.clock.time * pose_second(pose);
+    answer.at[answer.steps++] = answer.last;
   }
   breccia_model_destroy(&m);
   return answer;
 }
 
-/** Whether two answers agree. */
-static bool are_close(const Answer *a, const Answer *b)
+/** Returns the largest difference of two answers over the peak, at all times at which both have a step: where the number
+ * of iterations is that from which on increments get shorter, round-off decides. */
+static double difference_of(const Answer *a, const Answer *b)
 {
-  const double close = 1e-6; /* of the peak */
-  return fabs(a->peak - b->peak) <= close * a->peak && fabs(a->last - b->last) <= close * a->peak;
+  double most = fabs(a->peak - b->peak);
+  int common = 0;
+  for (int k = 0; k < a->steps; ++k)
+    for (int l = 0; l < b->steps; ++l) {
+      if (fabs(a->time[k] - b->time[l]) > 1e-9) continue;
+      most = larger_of(most, fabs(a->at[k] - b->at[l]));
+      ++common;
+    }
+  assert_true(3 * common > 2 * a->steps);
+  return most / a->peak;
 }
 
-/** Poses each body in the first way and in all ways at once. Bodies of bonds, whose increments jump, are posed in one
- * of the other ways besides. */
+/** Poses each body in the first way, turned, and in all ways at once. Bodies of bonds, whose increments jump, are posed
+ * in one of the other ways besides. */
 static void what_a_body_bears_does_not_depend_on_how_it_is_posed(void **state)
 {
   (void)state;
@@ -152,11 +177,13 @@ static void what_a_body_bears_does_not_depend_on_how_it_is_posed(void **state)
     assert_true(first.peak > 0 && first.last < 0.8 * first.peak); /* it has given way */
     for (int k = 1; k < POSES; ++k) {
       const bool bonds = strstr(bodies[b].law, "-softening") != NULL, turn_of = k == 1 + (b + 3) % (POSES - 2);
-      if (k < POSES - 1 && !(bonds && turn_of) && !whole_walks()) continue;
+      if (k < POSES - 1 && k != TURNED && !(bonds && turn_of) && !whole_walks()) continue;
       const Answer answer = answer_of(&bodies[b], &poses[k]);
-      if (are_close(&first, &answer)) continue;
+      const double difference = difference_of(&first, &answer);
+      if (difference <= 1e-6) continue;
       ++differ;
-      print_message("  %s: peak %.9g N, last %.9g N\n", poses[k].name, answer.peak, answer.last);
+      print_message("  %s: peak %.9g N, last %.9g N, apart by %g of the peak\n", poses[k].name, answer.peak,
+                    answer.last, difference);
     }
   }
   remove(FILE_NAME);
