@@ -1,7 +1,10 @@
 /* Characteristic length of a point with a fracture energy, as a function of the crack normal. A plane crack with the
  * normal n strains the points with members on both sides of the crack, over a length l(n) that depends on the lattice
  * (after Oliver 1989, Int. J. Numer. Methods Eng. 28, 461, who derives this length for finite elements). When damage
- * begins, a law evaluates l for the first principal strain and stores l in its history. Before, the history has 0. */
+ * begins, a law evaluates l for the first principal strain and stores l in its trial history. Stresses follow the
+ * committed l, or while it is 0 the length of the law: l does not change within an evaluation, so that tangents are
+ * consistent. A solver that has found equilibrium commits l and continues until equilibrium holds with l
+ * (normal_lengths_take). */
 #ifndef BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 #define BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 
@@ -29,16 +32,31 @@ bool normal_lengths_give(const struct Material *material, const NormalLengths *l
  *  the law has no such bound. */
 double normal_lengths_longest(const struct Material *material);
 
-/** Returns the lengths of points [length]. A point whose damage begins takes l of its first principal strain; all other
- *  points keep the committed length. The length stays 0 where the first two principal strains are equal.
+/** Commits the trial length of a point whose damage begins; all other history values stay as committed. The law of the
+ *  material accepts lengths.
+ *  @param[in] trial  history
+ *  @param[in,out] committed  history
+ *  @return true if the point had no length */
+bool normal_lengths_take(const struct Material *material, const double *trial, double *committed);
+
+/** Clears the committed length of a point whose committed history has no damage. The law of the material accepts
+ *  lengths. */
+void normal_lengths_drop(const struct Material *material, double *committed);
+
+/** Returns the lengths of points [length]. A point whose damage begins takes l of its first principal strain; damaged
+ *  points keep the committed length, and all others have 0. The length stays 0 where the first two principal strains are
+ *  equal.
  *  @param[in] begins     points strained beyond their damage threshold
- *  @param[in] committed  lengths of the last step; 0: damage has not begun */
+ *  @param[in] damaged    points with damage in their committed history
+ *  @param[in] committed  lengths of the last step, or taken in this one; 0: unknown */
 LANES_INLINE Lanes normal_lengths_choose(const NormalLengths *lengths, const SpectrumApart *apart, LaneMask begins,
-                                         Lanes committed)
+                                         LaneMask damaged, Lanes committed)
 {
   const double alike = 1e-6; /* relative difference of principal strains below which directions are round-off */
   const LaneMask wanted = begins & (committed <= lanes_set(0));
-  if (!lengths->across || !lanes_any(wanted)) return committed;
+  if (!lengths->across) return committed;
+  committed = lanes_where(begins | damaged, committed);
+  if (!lanes_any(wanted)) return committed;
   const Spectrum s = spectrum_with_vectors(apart);
   double chosen[LANES], value[2][LANES], normal[3][LANES];
   lanes_store(chosen, committed);

@@ -330,6 +330,12 @@ void domain_set_elastic_stage(Domain *domain, bool elastic);
 bool domain_may_soften(const Domain *domain);
 /** The same of laws of bonds, not of points. */
 bool domain_bonds_may_soften(const Domain *domain);
+/** Commits the lengths by crack normal of points whose damage begins in the trial state, so that the next evaluation
+ *  spreads their fracture energy over these lengths. By one thread.
+ *  @return number of these points */
+int64_t domain_take_lengths(Domain *domain);
+/** Clears lengths that domain_take_lengths has committed since the last domain_commit_points. By one thread. */
+void domain_drop_lengths(Domain *domain);
 /** Makes the trial state of all points the committed one. By one thread. */
 void domain_commit_points(Domain *domain);
 /** Lets loads say the strains that the body begins from. Points under initial stress have begun. @param[in] loading  borrowed */

@@ -84,3 +84,16 @@ int domain_find_lengths(Domain *d, Space space, Error *error)
   }
   return BRECCIA_OK;
 }
+
+int64_t domain_take_lengths(Domain *d)
+{
+  int64_t taken = 0;
+  if (!d->lengths) return 0;
+  for (int r = 0; r < d->region_count; ++r) taken += points_take_lengths(&d->regions[r].points);
+  return taken;
+}
+
+void domain_drop_lengths(Domain *d)
+{
+  for (int r = 0; r < d->region_count && d->lengths; ++r) points_drop_lengths(&d->regions[r].points);
+}

@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include "base/tensor.h"
+#include "constitutive/normal_lengths.h"
 #include "points/points_parts.h"
 #include <math.h>
 #include <stdlib.h>
@@ -121,6 +122,29 @@ void points_take_up(Points *points)
 {
   if (points->history_size) memcpy(points->trial, points->committed, sizeof(double) * points->history_size);
   untouched_find(points);
+}
+
+int64_t points_take_lengths(Points *points)
+{
+  int64_t taken = 0;
+  for (int64_t n = 0; n < points->run_count; ++n) {
+    const Material *m = &points->materials[points->runs[n].material];
+    if (!normal_lengths_give(m, NULL)) continue;
+    for (int64_t i = 0; i < points->runs[n].count; ++i) {
+      const int64_t at = points->history_first[n] + i * m->history_values;
+      taken += normal_lengths_take(m, points->trial + at, points->committed + at);
+    }
+  }
+  return taken;
+}
+
+void points_drop_lengths(Points *points)
+{
+  for (int64_t n = 0; n < points->run_count; ++n) {
+    const Material *m = &points->materials[points->runs[n].material];
+    for (int64_t i = 0; i < points->runs[n].count && normal_lengths_give(m, NULL); ++i)
+      normal_lengths_drop(m, points->committed + points->history_first[n] + i * m->history_values);
+  }
 }
 
 void points_commit(Points *points)

@@ -193,6 +193,12 @@ bool points_are_linear(const Points *points);
 /** Rows of strains, stresses, histories, and of what servers hold. @param[in] of  put behind their names, or NULL */
 void points_state(Points *points, const char *of, StateList *list);
 
+/** Commits the lengths by crack normal of rows whose damage begins in the trial state (constitutive/normal_lengths.h).
+ *  @return number of rows that had no length */
+int64_t points_take_lengths(Points *points);
+/** Clears lengths that points_take_lengths has committed since the last points_commit. */
+void points_drop_lengths(Points *points);
+
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);
 /** The committed state was put in place from outside: makes the trial one the same. */

@@ -142,6 +142,7 @@ void increment_retreat(Increment *i)
 {
   const Particles *p = i->domain->particles;
   state_undo(&i->before);
+  domain_drop_lengths(i->domain);
   for (int k = 0; k < p->motions; ++k) memcpy(p->external[k], i->external[k], sizeof(double) * (size_t)p->places);
   domain_put_stresses_by(i->domain);
   domain_follow(i->domain);

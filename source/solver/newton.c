@@ -142,6 +142,22 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   return NEWTON_CONVERGED;
 }
 
+NewtonOutcome newton_take_lengths(Newton *n, double time, bool *again, Error *error)
+{
+  const int64_t points = domain_take_lengths(n->domain);
+  *again = false;
+  if (!points) return NEWTON_CONVERGED;
+  const NewtonOutcome outcome = newton_find_forces(n, time, error);
+  if (outcome != NEWTON_CONVERGED) return outcome;
+  const double force = newton_size_of_forces(n, n->force);
+  n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
+  *again = !newton_is_balanced(n, force);
+  if (*again && n->log)
+    text_add(n->log, "    %lld points that begin to soften spread G_F by their crack normal: residual %.2e\n",
+             (long long)points, n->unbalanced);
+  return NEWTON_CONVERGED;
+}
+
 bool newton_add_motions(Newton *n, double time)
 {
   const Particles *p = n->domain->particles;
@@ -435,6 +451,16 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     newton_tell(n, correction, energy, share, &linear);
     if (newton_has_converged(n, force, correction, work, first_work)) {
+      bool again;
+      outcome = newton_take_lengths(n, time, &again, error);
+      if (outcome != NEWTON_CONVERGED) return outcome;
+      if (again) { /* as at the beginning of an increment */
+        force = newton_size_of_forces(n, n->force);
+        pace.least = INFINITY;
+        pace.since = 0;
+        before = 0;
+        continue;
+      }
       if (!n->beside && newton_is_carried_away(n->domain)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
       n->reference = n->exerted;
       return NEWTON_CONVERGED;

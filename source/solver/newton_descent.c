@@ -207,6 +207,14 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (!kept && isinf(near)) near = nearer * force;
     balanced = newton_has_converged(n, force, correction, energy, 1);
+    if (!balanced) continue;
+    bool again;
+    outcome = newton_take_lengths(n, time, &again, error);
+    if (outcome != NEWTON_CONVERGED) return outcome;
+    balanced = !again;
+    force = newton_size_of_forces(n, n->force);
+    near = nearer * force;
+    d->count = again ? 0 : d->count;
   }
   return NEWTON_CONVERGED;
 }

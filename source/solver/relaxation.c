@@ -223,6 +223,30 @@ static NewtonOutcome keep_pace(Relaxation *r, Newton *n, Pace *pace, double time
   return NEWTON_CONVERGED;
 }
 
+/** Takes steps of the motion until the forces out of balance are below the tolerance.
+ *  @param[in] most  iterations
+ *  @param[in,out] damping  of the next step */
+static NewtonOutcome come_to_rest(Relaxation *r, Newton *n, Pace *pace, double time, int64_t most, double *damping,
+                                  Error *error)
+{
+  const int64_t last = n->iterations + most;
+  NewtonOutcome outcome;
+  while (n->unbalanced > n->spec->residual) {
+    if (++n->iterations > last) return NEWTON_SLOW;
+    if ((outcome = take_step(r, n, time, damping, error)) != NEWTON_CONVERGED) return outcome;
+    n->unbalanced = find_unbalanced(n);
+    if (!isfinite(n->unbalanced) && n->exerted > 0) return NEWTON_DIVERGED;
+    if (n->log && (n->iterations % LOOKED_AT_EVERY == 0 || n->unbalanced <= n->spec->residual))
+      text_add(n->log, "    iteration %lld: residual %.2e, damping %.2g\n", (long long)n->iterations, n->unbalanced,
+               *damping);
+    if (n->iterations == pace->look && n->unbalanced > n->spec->residual &&
+        (outcome = keep_pace(r, n, pace, time, damping, error)) != NEWTON_CONVERGED)
+      return outcome;
+  }
+  n->reference = n->exerted;
+  return NEWTON_CONVERGED;
+}
+
 NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t most, Error *error)
 {
   const Unknowns *u = &n->linear.unknowns;
@@ -244,18 +268,15 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   double damping = 0;
   Pace pace = {.look = LOOKED_AT_EVERY, .patience = LOOKED_AT_EVERY, .last = INFINITY};
   vectors_clear(r->momentum, n->domain->particles);
-  while (n->unbalanced > n->spec->residual) {
-    if (++n->iterations > most) return NEWTON_SLOW;
-    if ((outcome = take_step(r, n, time, &damping, error)) != NEWTON_CONVERGED) return outcome;
+  for (bool again = true; again;) {
+    if ((outcome = come_to_rest(r, n, &pace, time, most, &damping, error)) != NEWTON_CONVERGED) return outcome;
+    if ((outcome = newton_take_lengths(n, time, &again, error)) != NEWTON_CONVERGED) return outcome;
+    if (!again) break;
     n->unbalanced = find_unbalanced(n);
-    if (!isfinite(n->unbalanced) && n->exerted > 0) return NEWTON_DIVERGED;
-    if (n->log && (n->iterations % LOOKED_AT_EVERY == 0 || n->unbalanced <= n->spec->residual))
-      text_add(n->log, "    iteration %lld: residual %.2e, damping %.2g\n", (long long)n->iterations, n->unbalanced,
-               damping);
-    if (n->iterations == pace.look && n->unbalanced > n->spec->residual &&
-        (outcome = keep_pace(r, n, &pace, time, &damping, error)) != NEWTON_CONVERGED)
-      return outcome;
+    vectors_clear(r->momentum, n->domain->particles);
+    damping = 0;
+    pace.look = n->iterations + LOOKED_AT_EVERY;
+    pace.last = INFINITY;
   }
-  n->reference = n->exerted;
-  return newton_has_gone_far(n) ? NEWTON_FAR : NEWTON_CONVERGED;
+  return newton_has_gone_far(n) ? NEWTON_FAR : outcome;
 }

@@ -169,6 +169,12 @@ void damage_plasticity_take_lengths(void *constants, const NormalLengths *length
   ((DamagePlasticity *)constants)->lengths = *lengths;
 }
 
+bool damage_plasticity_is_damaged(const void *constants, const double *history)
+{
+  (void)constants;
+  return history[PLASTIC_IN_TENSION] > 0;
+}
+
 double damage_plasticity_longest(const void *constants)
 {
   const DamagePlasticity *c = constants;

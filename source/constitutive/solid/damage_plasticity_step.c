@@ -301,8 +301,9 @@ LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidL
   plastic_strain_lanes(&c->elastic, p->strain, effective, plastic);
   for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
   p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
-  p->trial[PLASTIC_LENGTH] = normal_lengths_choose(&c->lengths, &s->apart, s->found[FOUND_TENSION] > lanes_set(0),
-                                                   p->committed[PLASTIC_LENGTH]);
+  p->trial[PLASTIC_LENGTH] =
+      normal_lengths_choose(&c->lengths, &s->apart, s->found[FOUND_TENSION] > lanes_set(0),
+                            p->committed[PLASTIC_IN_TENSION] > lanes_set(0), p->committed[PLASTIC_LENGTH]);
   p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
   Dual size;
   const Dual share =
@@ -401,7 +402,7 @@ LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes
   const Lanes stress =
       lanes_dot(lanes_set(3), radius, lanes_set(c->alpha), t->invariant, lanes_set(fmax(0, beta)), most);
   *found = (history[PLASTIC_IN_TENSION] <= zero) & (history[PLASTIC_IN_COMPRESSION] <= zero) &
-           (stress <= lanes_set((1 - c->alpha) * c->compression));
+           (history[PLASTIC_LENGTH] <= zero) & (stress <= lanes_set((1 - c->alpha) * c->compression));
 }
 
 int LANES_NAMED(damage_plasticity_update)(const void *constants, const breccia_batch *batch)

@@ -153,6 +153,12 @@ void link_damage_take_lengths(void *constants, const NormalLengths *lengths)
   if (c->straight > 0) c->lengths = *lengths;
 }
 
+bool link_damage_is_damaged(const void *constants, const double *history)
+{
+  (void)constants;
+  return history[LINK_TENSILE] > 0;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const LinkLaw *)constants)->update(constants, batch);

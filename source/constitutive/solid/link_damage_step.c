@@ -112,7 +112,8 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   for (int k = 0; k < 3; ++k) effective[k] = dual_sum(n, dual_scale(n, lambda, volume), twice, strain[k]);
   find_closed_stress(n, &c->closed, strain, effective, closed);
   const LaneMask begins = parts.value[0] > lanes_set(c->link.tension_begin);
-  const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[LINK_LENGTH]);
+  const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[LINK_TENSILE] > lanes_set(0),
+                                             p->committed[LINK_LENGTH]);
   find_rest(n, c, p->committed, p->committed[LINK_LENGTH], strain, effective, closed, p->trial, rest);
   p->trial[LINK_LENGTH] = length;
   for (int k = 0; k < 3; ++k) {
@@ -141,8 +142,8 @@ LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes
   const LinkLaw *c = constants;
   const Lanes square = trial_strain_square(&c->elastic, t);
   /* Damage in compression grows only where there is damage in tension. */
-  *found =
-      (history[LINK_TENSILE] <= lanes_set(0)) & (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
+  *found = (history[LINK_TENSILE] <= lanes_set(0)) & (history[LINK_LENGTH] <= lanes_set(0)) &
+           (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
 }
 
 int LANES_NAMED(link_damage_update)(const void *constants, const breccia_batch *batch)

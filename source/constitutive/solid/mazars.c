@@ -81,6 +81,11 @@ void mazars_take_lengths(void *constants, const NormalLengths *lengths)
   ((Mazars *)constants)->lengths = *lengths;
 }
 
+bool mazars_is_damaged(const void *constants, const double *history)
+{
+  return history[MAZARS_LARGEST] > ((const Mazars *)constants)->threshold;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const Mazars *)constants)->update(constants, batch);

@@ -82,7 +82,8 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
     spectrum_values(&apart, spectrum.value);
   Dual strain[3], stress[3], largest, damage;
   const LaneMask begins = mazars_equivalent(spectrum.value) > lanes_set(c->threshold);
-  const Lanes length = normal_lengths_choose(&c->lengths, &apart, begins, p->committed[MAZARS_LENGTH]);
+  const Lanes length = normal_lengths_choose(
+      &c->lengths, &apart, begins, p->committed[MAZARS_LARGEST] > lanes_set(c->threshold), p->committed[MAZARS_LENGTH]);
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
   respond(n, c, mazars_rate(c, p->committed[MAZARS_LENGTH]), strain, p->committed, stress, &largest, &damage);
   p->trial[MAZARS_LENGTH] = length;
@@ -106,7 +107,8 @@ LANES_INLINE void inside(const void *constants, const TrialLanes *t, const Lanes
 {
   const Mazars *c = constants;
   const Lanes square = trial_strain_square(&c->elastic, t);
-  *found = (history[MAZARS_LARGEST] <= lanes_set(c->threshold)) & (square <= lanes_set(c->threshold * c->threshold));
+  *found = (history[MAZARS_LARGEST] <= lanes_set(c->threshold)) & (history[MAZARS_LENGTH] <= lanes_set(0)) &
+           (square <= lanes_set(c->threshold * c->threshold));
 }
 
 int LANES_NAMED(mazars_update)(const void *constants, const breccia_batch *batch)

@@ -86,7 +86,8 @@ static void points_spread_the_fracture_energy_over_the_length_of_their_first_str
                                    "fracture energy=0.1", "compressive strength=34000", over, initial, NULL)
                      : material_of(laws[k], "Young modulus=30e6", "Poisson ratio=0", "tensile strength=3000",
                                    "fracture energy=0.1", over, NULL);
-      if (turn == 1) assert_true(normal_lengths_give(&m, &(NormalLengths){length_of_context, &length}));
+      if (turn == 1)
+        assert_true(normal_lengths_give(&m, &(NormalLengths){.across = length_of_context, .context = &length}));
       Point p = point_start(&m);
       double strain[6] = {0};
       for (int n = 0; n < 400; ++n) {
