@@ -196,8 +196,9 @@ static void check_brittleness(breccia_model *model, const Material *m, const Reg
 }
 
 /** Warns where cracks would spread the fracture energy over more than the law can. The law then takes its longest
- *  length, and points take the ratio of both lengths times G_F; cracks take more where points beside their band soften,
- *  too (correspondence_softening_length bounds the wanted length). */
+ *  length, and points take the ratio of both lengths times G_F. Cracks take another multiple: points at the edge of the
+ *  band do not soften to the end, and where l is short those beside the band soften, too. The band in the message is
+ *  that of notched strips in correspondence (docs/choosing.md, "Toughness by direction"). */
 static void check_spread(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
@@ -208,7 +209,8 @@ static void check_spread(breccia_model *model, int k)
   plausibility_say(
       model, plausibility_parameter_node(model, m, PARAMETER_FRACTURE_ENERGY),
       "fracture energy: a crack in material '%s' is up to %.3g %s wide, and %s allows %.3g %s at the most, "
-      "beyond which its curve would snap back: cracks take %.2f times G_F or more; take a finer spacing",
+      "beyond which its curve would snap back: points take %.2f times G_F, and cracks in correspondence took 0.82 to "
+      "1.09 times as much as points; take a finer spacing",
       m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
 }
 
