@@ -43,7 +43,7 @@ ROWS = [
     ("bond-based", "critical bond energy", FIBRE, BOND, HORIZONS),
     ("ordinary", "critical stretch", ELASTIC, STRETCH, HORIZONS),
     ("ordinary", "critical bond energy", ELASTIC, BOND, HORIZONS),
-    ("hybrid", "critical bond energy", ELASTIC, BOND, HORIZONS[:2]),
+    ("hybrid", "critical bond energy", ELASTIC, BOND, HORIZONS),
     ("correspondence", "critical bond energy", ELASTIC, BOND, HORIZONS[1:]),
     ("bond-based", "exponential-softening", law("exponential-softening", 6e6), None, HORIZONS),
     ("hybrid", "mazars", law("mazars", 6e6, **{"Poisson ratio": 0.2}), None, HORIZONS[:2]),

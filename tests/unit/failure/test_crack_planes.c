@@ -252,6 +252,25 @@ static void hybrid_bonds_break_at_the_energy_that_goes_with_them(void **state)
   }
 }
 
+static void check_tells_what_cracks_through_hybrid_bonds_took(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *lattice, *horizon, *words;
+  } cases[] = {{"square", "0.15", "took 0.38 to 0.9 of it, and loads felt 1.1 to 2.02 where"},
+               {"square", "0.2015", "took 0.52 to 0.73 of it, and loads felt 1.35 to 1.53 where"},
+               {"square", "0.3015", "took 0.94 to 0.99 of it, and loads felt 1.61 to 1.68 where"},
+               {"hexagonal", "0.2015", "took 0.96 to 1.03 of it, and loads felt 1.86 to 1.92 where"}};
+  for (int k = 0; k < 4; ++k) {
+    char peridynamics[60];
+    snprintf(peridynamics, sizeof peridynamics, "formulation: hybrid, horizon: %s", cases[k].horizon);
+    breccia_model *m = body_of_lattice(cases[k].lattice, peridynamics, "model: elastic, Poisson ratio: 0.2",
+                                       "failure: {criterion: critical bond energy, fracture energy: 0.02}\n");
+    holds_words(breccia_model_overview(m), cases[k].words);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void check_tells_the_band_over_all_directions(void **state)
 {
   (void)state;
@@ -408,6 +427,7 @@ int main(void)
       cmocka_unit_test(cracks_through_softening_points_take_the_fracture_energy_along_diagonals_too),
       cmocka_unit_test(points_of_correspondence_spread_the_fracture_energy_by_the_brittleness_of_their_law),
       cmocka_unit_test(broken_bonds_take_what_check_tells),
+      cmocka_unit_test(check_tells_what_cracks_through_hybrid_bonds_took),
       cmocka_unit_test(check_tells_the_band_over_all_directions),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
