@@ -76,6 +76,10 @@ struct Ordinary {
                                    bond; NULL: they are 1 */
   float *surfaces; /* [surface_count] which lie here */
   size_t surface_count;
+  int32_t *incomplete; /* [places] index into fourth, negative where there is none; NULL: no family has one */
+  float *fourth;       /* [incomplete_count][ordinary_fourth_count] mean products n n n n of incomplete families
+                                   as they began, by factors */
+  int32_t incomplete_count;
   OrdinaryDilating *dilating;   /* [patterns] */
   OrdinaryResisting *resisting; /* [patterns] */
   double *inverse;              /* [places] d / m of the family as it began; 0 where there is no bond */
@@ -163,6 +167,16 @@ Across ordinary_coupling(Space space, const Material *material);
 void ordinary_balance(const Ordinary *o, int block);
 /** Finds the factors of bonds of families that are not complete (ordinary_families.c). */
 int ordinary_balance_families(Ordinary *o, Error *error);
+/** Number of products n_x^i n_y^j n_z^k of the fourth order. */
+static inline int ordinary_fourth_count(int dimensions)
+{
+  return dimensions == 2 ? 5 : 15;
+}
+/** Index of such a product: i, then j, from 0. */
+static inline int ordinary_fourth_index(int dimensions, const int power[3])
+{
+  return dimensions == 2 ? power[0] : power[0] * (11 - power[0]) / 2 + power[1];
+}
 /** Young's modulus that the families of a block show in uniform tension along an axis, over that of its material. */
 double ordinary_body_young(const void *formulation, int block, int axis);
 /** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */

@@ -116,25 +116,3 @@ void ordinary_gradient(const void *formulation, int64_t place, double f[9])
   f[8] = sqrt(fmax(0, 1 + ordinary_across(ordinary_material(o, place)) * (sum - inelastic - 4 * freely) - inelastic +
                           2 * freely));
 }
-
-/** Stress of the family's own force state: sum t y (x) y / |y| V. Across the plane, in plane strain, lambda theta + 2 G p. */
-void ordinary_stress(const void *formulation, int64_t place, double stress[6])
-{
-  const Ordinary *o = formulation;
-  const Family *f = o->family;
-  const int64_t slice = place / SLICE;
-  const int lane = (int)(place % SLICE);
-  for (int k = 0; k < 6; ++k) stress[k] = 0;
-  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-    if (!(f->intact[slot] >> lane & 1)) continue;
-    const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double pull = bond.weight * ordinary_end(o, place, slot * SLICE + lane, &bond, &s).tension / s.length;
-    for (int k = 0; k < 6; ++k) stress[k] += pull * s.y[symmetric_row[k]] * s.y[symmetric_column[k]];
-  }
-  const Material *m = ordinary_material(o, place);
-  if (o->space != SPACE_PLANE_STRAIN) return;
-  const double inelastic = o->flow ? o->flow->across[1][place] : 0, freely = ordinary_free(o, place);
-  stress[ZZ] = o->share[place] * ((m->bulk - 2 * m->shear / 3) * ordinary_elastic_dilatation(o, place) +
-                                  2 * m->shear * inelastic - 2 * m->shear * freely);
-}

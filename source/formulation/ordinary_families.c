@@ -421,6 +421,27 @@ static void families_find_goals(const FamilyBalance *b)
   team_each(places, families_find_goal, (void *)(uintptr_t)b);
 }
 
+/** Keeps the mean products of the fourth order of a family, from which stress follows (ordinary_stress.c). */
+static void families_keep_fourth(void *context, int64_t place)
+{
+  const FamilyBalance *b = context;
+  const Ordinary *o = b->o;
+  const Family *f = o->family;
+  const int64_t slice = place / SLICE;
+  double room[TERM_ROOM], sum[TERM_ROOM] = {0}, total = 0;
+  if (!families_is_own(b, place)) return;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, (int)(place % SLICE));
+    const double *h = families_bond_products(b, slice, slot, &bond, room), q = bond.weight * bond.length * bond.length;
+    total += q;
+    for (int t = 0; t < b->terms; ++t) sum[t] += q * h[t];
+  }
+  float *fourth = o->fourth + (int64_t)b->terms * b->wish[place];
+  for (int t = 0; t < b->terms && total > 0; ++t)
+    fourth[t] = (float)(sum[t] / total / b->term[t].scale + b->term[t].mean);
+}
+
 int ordinary_balance_families(Ordinary *o, Error *error)
 {
   const int64_t places = o->particles->places;
@@ -454,8 +475,13 @@ int ordinary_balance_families(Ordinary *o, Error *error)
       if (o->body->margin_of) team_each(places, families_mirror_wish, &b);
       team_each(o->particles->slices, families_change_slice, &b);
     }
-  }
-  free(b.wish);
+    o->fourth = memory_zeroed((size_t)count * (size_t)b.terms, sizeof *o->fourth, "bond constants", error);
+    if (o->fourth && !failed) team_each(places, families_keep_fourth, &b);
+    failed |= !o->fourth;
+    o->incomplete = b.wish;
+    o->incomplete_count = count;
+  } else
+    free(b.wish);
   free(b.of_patterns);
   free(b.x);
   free(b.own);

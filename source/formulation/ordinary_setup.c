@@ -155,6 +155,8 @@ void ordinary_destroy(void *formulation)
   free(o->factor);
   free(o->surface);
   free(o->surfaces);
+  free(o->incomplete);
+  free(o->fourth);
   free(o->dilating);
   free(o->resisting);
   double **const arrays[] = {&o->inverse, &o->left,  &o->volumetric, &o->shear, &o->share, &o->dilatation,
@@ -304,9 +306,12 @@ static void describe_tension(const Ordinary *o, int block, Text *text)
       "its axes",
       o->body->blocks[block]->head.name, least, largest);
   if (fabs(furthest) > most)
-    text_add(text,
-             "; in tension along its length the body is %.0f %% %s than asked; take more rows of particles across",
-             100 * fabs(furthest), furthest > 0 ? "stiffer" : "softer");
+    text_add(
+        text,
+        "; in tension along its length the body is %.0f %% %s than asked, and strains%s of particles under given loads "
+        "are as much too %s; take more rows of particles across",
+        100 * fabs(furthest), furthest > 0 ? "stiffer" : "softer", o->fourth ? " and stresses" : "",
+        furthest > 0 ? "small" : "large");
   text_add(text, "\n");
 }
 
@@ -403,5 +408,7 @@ size_t ordinary_bytes(const void *formulation)
          (o->by_length ? (size_t)o->family->stored_slots * SLICE * sizeof *o->by_length : 0) +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
          (o->surface ? (size_t)o->particles->slices * sizeof *o->surface : 0) + o->surface_count * sizeof *o->surfaces +
+         (o->incomplete ? (size_t)o->particles->places * sizeof *o->incomplete : 0) +
+         (size_t)(o->incomplete_count * ordinary_fourth_count(o->dimensions)) * sizeof *o->fourth +
          ordinary_flow_bytes(o);
 }
