@@ -70,19 +70,22 @@ static double fading_held(const void *formulation, int64_t place)
   return energy.held;
 }
 
-/** Returns true if a point's law has less than 0.7 of its stiffness left, as a secant from the unstrained state. */
+/** Returns true if a point's law has less than 0.7 of its stiffness left, in all or in shear, as a secant from the
+ * unstrained state. */
 static bool has_yielded(const Points *points, const Material *m, int64_t place)
 {
   const double yielded = 0.7;
-  double work = 0, deviators = 0, strain[6];
+  double work = 0, deviators = 0, pressure = 0, strain[6];
   if (m->law->linear) return false;
   for (int k = 0; k < 6; ++k) {
     strain[k] = points->strain[k][place] + (points->initial[k] ? points->initial[k][place] : 0);
     work += points->stress[k][place] * strain[k];
+    if (k < 3) pressure += points->stress[k][place];
   }
   const double volume = strain[XX] + strain[YY] + strain[ZZ];
   for (int k = 0; k < 3; ++k) deviators += 2 * pow(strain[k] - volume / 3, 2) + strain[k + 3] * strain[k + 3];
-  return work < yielded * (m->bulk * volume * volume + m->shear * deviators);
+  const double shear = m->shear * deviators, elastic = m->bulk * volume * volume + shear;
+  return work < yielded * elastic || work - pressure * volume / 3 < yielded * shear - roundings * elastic;
 }
 
 static void fading_yielded_energy(const void *formulation, int64_t place, YieldedEnergy *energy)
@@ -162,14 +165,16 @@ static void set_hold(const Correspondence *c, int64_t slice, const double *facto
 
 /* ---- what a step finds ---- */
 
-/** Stiffness that four points have left, over their first one. */
+/** Stiffness that four points have left, over their first one; of a law that yields that of shear, if it is less: what
+ * ground stores under pressure does not change as it slides. */
 LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, const Sweep *sweep, int64_t here)
 {
-  Lanes strain[6], work = {0}, deviators = {0};
+  Lanes strain[6], work = {0}, deviators = {0}, pressure = {0};
   for (int k = 0; k < 6; ++k) {
     strain[k] = lanes_load(sweep->strain[k] + here);
     if (c->points->initial[k]) strain[k] += lanes_load(c->points->initial[k] + sweep->first * SLICE + here);
     work += lanes_load(sweep->stress[k] + here) * strain[k];
+    if (k < 3) pressure += lanes_load(sweep->stress[k] + here);
   }
   const Lanes volume = strain[XX] + strain[YY] + strain[ZZ], mean = volume * lanes_set(1.0 / 3);
   for (int k = 0; k < 3; ++k) {
@@ -179,7 +184,12 @@ LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, co
   const Lanes elastic = lanes_set(m->bulk) * volume * volume + lanes_set(m->shear) * deviators;
   const LaneMask lost = work < lanes_set(1 - roundings) * elastic;
   const Lanes share = work / lanes_choose(lost, elastic, lanes_set(1)); /* a point without strain has 0 of 0 */
-  return lanes_choose(lost, lanes_greatest(lanes_set(0), share), lanes_set(1));
+  const Lanes left = lanes_choose(lost, lanes_greatest(lanes_set(0), share), lanes_set(1));
+  if (c->fades != FADES_WITH_YIELDING || m->softening_energy > 0) return left;
+  const Lanes shear = lanes_set(m->shear) * deviators, sheared = work - pressure * mean;
+  const LaneMask slid = sheared < shear - lanes_set(roundings) * elastic;
+  const Lanes of_shear = lanes_greatest(lanes_set(0), sheared) / lanes_choose(slid, shear, lanes_set(1));
+  return lanes_choose(slid, lanes_least(left, of_shear), left);
 }
 
 /** What the control of four places would store per volume if nothing of it had faded. @param[in] g  [9][BATCH] G */

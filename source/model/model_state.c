@@ -24,7 +24,9 @@ void model_state(breccia_model *model, StateList *list)
                  {"highest mean stress", "stress", &peaks->mean_high},
                  {"largest damage", "1", &peaks->damage},
                  {"lowest finite strain", "1", &peaks->strain_low},
-                 {"highest finite strain", "1", &peaks->strain_high}};
+                 {"highest finite strain", "1", &peaks->strain_high},
+                 {"strength reduction held by control", "1", &peaks->reduction_held},
+                 {"strength reduction before", "1", &peaks->reduction_free}};
   domain_state(&model->domain, list);
   solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)

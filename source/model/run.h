@@ -68,6 +68,10 @@ void run_tell_loads(const breccia_model *model, Text *text);
 extern const double run_most_control;
 /** Sums of the energies of all places whose points have yielded. */
 YieldedEnergy run_yielded_energy(const Domain *domain);
+/** Share of the energy beside yielded laws that control of zero-energy modes may hold where a strength reduction acts. */
+extern const double run_most_sliding;
+/** Notes from which factor of a strength reduction on control of zero-energy modes holds more, in stages that rest. */
+int run_note_reduction(breccia_model *model, Error *error);
 /** Adds to summary.json by what measures a body bears its loads, beside forces out of balance and kinetic energy. */
 void run_add_measures(const breccia_model *model, Text *text);
 /** Puts what the run did into words, for breccia_model_outcome. */

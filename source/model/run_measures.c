@@ -9,6 +9,7 @@
 #include <string.h>
 
 const double run_most_control = 0.05;
+const double run_most_sliding = 0.25; /* control that fades has held slopes beyond their limit with half of it */
 
 YieldedEnergy run_yielded_energy(const Domain *d)
 {
@@ -25,6 +26,22 @@ YieldedEnergy run_yielded_energy(const Domain *d)
     sum.lasting += one.lasting;
   }
   return sum;
+}
+
+int run_note_reduction(breccia_model *model, Error *error)
+{
+  const Solver *s = &model->solver;
+  Peaks *p = &model->peaks;
+  const double factor = loading_strength_reduction(s->loading, s->clock.time);
+  if (!s->type->rests || !(factor > 1) || p->reduction_held > 0) return BRECCIA_OK;
+  const int status = domain_observe(&model->domain, error);
+  const YieldedEnergy yielded = status ? (YieldedEnergy){0} : run_yielded_energy(&model->domain);
+  domain_stop_observing(&model->domain);
+  if (yielded.held > run_most_sliding * yielded.stored)
+    p->reduction_held = factor;
+  else
+    p->reduction_free = factor;
+  return status;
 }
 
 /** Largest displacement [length] of any particle. */

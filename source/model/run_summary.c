@@ -385,6 +385,24 @@ static void tell_control(const Domain *d, double stored, Text *t)
              100 * yielded.lasting / stored);
 }
 
+/** Warns where control of zero-energy modes held ground that slides, from a factor of a strength reduction on. */
+static void tell_held(const breccia_model *model, Text *t)
+{
+  const Peaks *p = &model->peaks;
+  const Region *region = &model->domain.regions[0];
+  const ControlType *control = region->type->control;
+  if (!(p->reduction_held > 0)) return;
+  text_add(
+      t,
+      "warning: from a factor of %.4g on, control of zero-energy modes holds more than %.0f %% of the energy that is "
+      "stored where laws have yielded: ground that slides comes to rest by it",
+      p->reduction_held, 100 * run_most_sliding);
+  if (p->reduction_free > 0) text_add(t, "; take no factor of safety above %.4g", p->reduction_free);
+  if (control && !control->influence_decreases(region->formulation))
+    text_add(t, ", or take 'influence: conical' with 'zero-energy control: {silling: 0.2, fades: yielding}'");
+  text_add(t, "\n");
+}
+
 /** Says by what factor loads divide strengths in the end, which is the last one with an equilibrium where the run has
  * failed. */
 static void tell_strength(const breccia_model *model, bool failed, Text *t)
@@ -409,6 +427,7 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
   if (step > 0)
     text_add(t, "at %.0f spacings across the height of the ground's step the factor may be some %.0f %% too high\n",
              step, 100 * ground_step_excess(&model->domain, step));
+  tell_held(model, t);
 }
 
 /** Energy of strains that are roundings: what is less says nothing. */

@@ -132,6 +132,7 @@ grep -q '^under 120 kN 3 of 3 runs fail' out && grep -q '^under 90 kN 0 of 3 run
 equal "samples: status" $? 0
 grep -q '^ *100 kN ' out && grep -q '^ *150 kN ' out || fail "samples: $(cat out errors)"
 # Ground on a slope without end slides where strengths are divided by c / (gamma H sin b) + tan(phi) / tan(b) = 0.447 + 0.8 = 1.247.
+# Strains of Green and Lagrange of 5 % lessen forces as much before it slides.
 cat > slope.yaml <<'Y'
 units: {length: m, force: kN, time: s}
 variables: {factor: 1, g: 10, lean: "${atan(0.5)}"}
@@ -145,7 +146,24 @@ pictures: []
 Y
 "$breccia" failure slope.yaml --load variables.factor=1:2 --within 0.02 > out 2> errors
 equal "a slope without end: status" $? 0
-sed -n 's/^factor of safety: between \([0-9.]*\) and .*/\1/p' out | awk '{good = $1 > 1.15 && $1 < 1.31} END {exit !good}' || fail "a slope without end: $(cat out errors)"
+sed -n 's/^factor of safety: between \([0-9.]*\) and .*/\1/p' out | awk '{good = $1 > 1.14 && $1 < 1.31} END {exit !good}' || fail "a slope without end: $(cat out errors)"
+# Clay on half of its height slides at 1.50 by slip circles. With constant influence control of zero-energy modes holds it
+# beyond; a run tells from which factor on.
+if [ -z "${BRECCIA_SANITIZED:-}" ]; then
+  cat > clay.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {clay: {model: j2, density: 2, Young modulus: 1e5, Poisson ratio: 0.49, yield stress: "${sqrt(3)*31.35}"}}
+body: {b: {material: clay, lattice: square, spacing: 1, thickness: 1, shape: {polygon: {corners: [[0, 0], [18, 0], [18, 3], [12, 3], [6, 9], [0, 9]]}}}}
+peridynamics: {formulation: correspondence, space: plane strain, zero-energy control: {silling: 0.2, fades: yielding}}
+loads: [{on: {face: x-}, support: {held: across}}, {on: {face: x+}, support: {held: across}}, {on: {face: y-}, support: {held: all}}, {gravity: [0, -10], history: {ramp to: 1}}]
+solve: [{name: at rest, static: {increments: 5}},
+        {name: weaken, displacements: zero, loads: [{strength reduction: 1.65, history: {ramp to: 1}}], static: {increments: 5}}]
+pictures: []
+Y
+  "$breccia" run clay.yaml > out 2> errors
+  grep -q 'warning: from a factor of 1\.[456][0-9]* on, control of zero-energy modes holds more than 25 % of .*; take no factor of safety above 1\.[345][0-9]*, or take .influence: conical' out errors ||
+    fail "ground held by control: $(cat out errors)"
+fi
 refused() { # name, words, arguments
   local name=$1 words=$2
   shift 2

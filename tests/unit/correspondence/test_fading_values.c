@@ -20,15 +20,18 @@ static void take(breccia_model *m)
 static const struct Law {
   const char *law, *control;
   double softening; /* energy per volume with which it begins to soften; 0: it yields */
+  double pressed;   /* strain alike in all directions, in addition to others */
 } laws[] = {
     {"model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, tensile strength: 3000",
-     "silling: 0.1", 3000.0 * 3000 / (2 * 30e6)},
+     "silling: 0.1", 3000.0 * 3000 / (2 * 30e6), 0},
     {"model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, tensile strength: 3000", "wan: 0.1",
-     3000.0 * 3000 / (2 * 30e6)},
+     3000.0 * 3000 / (2 * 30e6), 0},
     {"model: damage-plasticity, Young modulus: 28e6, Poisson ratio: 0.15, fracture energy: 0.12, tensile strength: "
      "2500, compressive strength: 30e3",
-     "silling: 0.3", 2500.0 * 2500 / (2 * 28e6)},
-    {"model: j2, Young modulus: 30e6, Poisson ratio: 0.2, yield stress: 2500", "silling: 0.2, fades: yielding", 0},
+     "silling: 0.3", 2500.0 * 2500 / (2 * 28e6), 0},
+    {"model: j2, Young modulus: 30e6, Poisson ratio: 0.2, yield stress: 2500", "silling: 0.2, fades: yielding", 0, 0},
+    {"model: j2, Young modulus: 30e6, Poisson ratio: 0.45, yield stress: 2500", "silling: 0.2, fades: yielding", 0,
+     -5e-4},
 };
 enum { LAWS = sizeof laws / sizeof *laws };
 
@@ -42,20 +45,24 @@ static breccia_model *block_of(const struct Law *law)
                   law->law, law->control);
 }
 
-/** What of its stiffness a place has left in its last forces: s : e / e : C0 : e, at most 1. */
-static double left_of(const breccia_model *m, int32_t place)
+/** What of its stiffness a place has left in its last forces: s : e / e : C0 : e, at most 1; of laws that yield without
+ *  softening that of the deviators, if it is less. */
+static double left_of(const breccia_model *m, int32_t place, bool yields)
 {
   const Points *points = &m->domain.regions[0].points;
   const Material *c = points_material(points, place);
-  double work = 0, volume = 0, square = 0;
+  double work = 0, volume = 0, square = 0, pressure = 0;
   for (int k = 0; k < 6; ++k) {
     const double e = points->strain[k][place];
     work += points->stress[k][place] * e;
+    if (k < 3) pressure += points->stress[k][place];
     square += (k < 3 ? 1 : 0.5) * e * e;
     if (k < 3) volume += e;
   }
   const double elastic = (c->bulk - 2 * c->shear / 3) * volume * volume + 2 * c->shear * square;
-  return work < elastic * (1 - 1e-6) ? fmax(0, work / elastic) : 1;
+  const double shear = elastic - c->bulk * volume * volume, sheared = work - pressure * volume / 3,
+               left = work < elastic * (1 - 1e-6) ? fmax(0, work / elastic) : 1;
+  return yields && sheared < shear - 1e-6 * elastic ? fmin(left, fmax(0, sheared / shear)) : left;
 }
 
 /** Half the sum over the family of omega V z . C z, z = eta - G xi with the G that fits best. @param[in] whole  C where nothing has faded */
@@ -114,9 +121,10 @@ static void control_keeps_what_the_law_keeps_and_stores_no_more_than_its_share(v
     double least = 1;
     for (int k = 0; k < 4; ++k) {
       const double *e = strains[k];
-      deform_uniformly(m, (const double[]){1 + e[0], e[2], 0, 0, 1 + e[1], 0, 0, 0, 1});
+      const double sides = 1 + laws[n].pressed;
+      deform_uniformly(m, (const double[]){sides + e[0], e[2], 0, 0, sides + e[1], 0, 0, 0, sides});
       take(m);
-      const double left = left_of(m, p->place_of[0]);
+      const double left = left_of(m, p->place_of[0], laws[n].softening == 0);
       least = fmin(least, left);
       compute_forces(m);
       for (int64_t i = 0; i < p->count; ++i) {
@@ -142,7 +150,7 @@ static void control_keeps_what_the_law_keeps_and_stores_no_more_than_its_share(v
       double full[9];
       for (int k = 0; k < 9; ++k) full[k] = whole[6 * place + symmetric_place[k]];
       const double stored = stored_of(m, place, full), most = laws[n].softening / 8;
-      double left = left_of(m, place);
+      double left = left_of(m, place, laws[n].softening == 0);
       if (laws[n].softening > 0) {
         left *= fmin(1, most / stored);
         stored > most ? ++bounded : ++unbounded;
