@@ -157,6 +157,9 @@ typedef struct breccia_law {
   int takes_lateral; /* 1: the law has one component and reads `lateral` of its batches; single points have none */
   /** Returns the compressive strength of a body of bonds of this law, above 0. NULL: the law reports none. */
   double (*compressive_strength)(const void *constants);
+  /** Number, counted from 1, of the history value in which bonds of plane bodies find the confining pressure after each
+   * step [stress], 0 or more: the smaller principal pressure in the plane. `update` copies it. 0: the law reads none. */
+  int confined_history;
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

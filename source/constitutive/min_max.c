@@ -142,6 +142,11 @@ bool material_takes_lateral(const Material *material)
   return min_max_base(material)->law->takes_lateral != 0;
 }
 
+int material_confined_history(const Material *material)
+{
+  return material->remote ? 0 : min_max_base(material)->law->confined_history;
+}
+
 double material_compressive_strength(const Material *material)
 {
   const Material *base = min_max_base(material);

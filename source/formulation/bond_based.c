@@ -67,6 +67,7 @@ static void destroy(void *formulation)
   free(b->surface);
   free(b->gaps);
   free(b->around);
+  free(b->confining);
   places_free(&b->pull);
   places_free(&b->tension);
   places_free(&b->slope);
@@ -134,7 +135,7 @@ static void *create(const FormulationParts *parts, Error *error)
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
   if ((spec->surface_correction == SURFACE_BY_ENERGY && bond_correct_surface(b, error)) ||
-      bond_lateral_create(b, error)) {
+      bond_lateral_create(b, error) || bond_confinement_create(b, error)) {
     destroy(b);
     return NULL;
   }
@@ -245,7 +246,7 @@ static void gradient(const void *formulation, int64_t place, double f[9])
 
 /** Half of the sum of force (x) y over the bonds. In plane strain each bond of the plane stands for a fan of bonds that slant through the
  *  thickness, which press across the plane with a quarter of what they carry along it (docs/theory.md 2). */
-static void stress(const void *formulation, int64_t place, double s[6])
+void bond_stress(const void *formulation, int64_t place, double s[6])
 {
   const BondBased *b = formulation;
   const Family *f = b->family;
@@ -321,6 +322,7 @@ static size_t bytes(const void *formulation)
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
          (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
          (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) + bond_lateral_bytes(b) +
+         bond_confinement_bytes(b) +
          (b->by_length ? (size_t)b->family->stored_slots * SLICE * sizeof *b->by_length : 0);
 }
 
@@ -360,7 +362,7 @@ const FormulationType formulation_bond_based = {
     .bond_energy = bond_energy,
     .energy_room = bond_energy_room,
     .gradient = gradient,
-    .stress = stress,
+    .stress = bond_stress,
     .characteristic_length = bond_characteristic_length,
     .crack_length = bond_crack_length,
     .uniaxial_strength = bond_uniaxial_strength,
@@ -371,5 +373,7 @@ const FormulationType formulation_bond_based = {
     .describe = bond_describe,
     .former_bonds = former_bonds,
     .takes_secants = takes_secants,
+    .state = bond_confinement_state,
+    .commit = bond_confinement_commit,
     .bytes = bytes,
 };

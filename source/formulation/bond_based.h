@@ -56,6 +56,9 @@ struct BondBased {
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   double *around; /* [places][12] strains of families (bond_lateral.c); NULL: no law reads the pressure across bonds */
+  /** [2][places] confining pressures (bond_confinement.c): as stored in histories, and a work array; NULL: no law reads
+   *  them. */
+  double *confining;
   uint8_t *range; /* [slices] range of the stretches of the last evaluation */
   uint8_t *gaps;  /* [slices] 1: bonds are missing (stretch_has_gaps) */
   BondResist *resist_springs;
@@ -105,6 +108,19 @@ double bond_lateral(const BondBased *b, int64_t place, const Bond *bond);
 /** Returns the elongation of a bond along a unit vector by the elastic stress across it at a strain; 0 if this stress
  *  is tensile. */
 double bond_elongation_of_pressure(Space space, const double strain[6], const double n[3]);
+
+/** Returns the strain of the family of a place in the last evaluation [6]; a law must read the pressure across bonds. */
+const double *bond_family_strain(const BondBased *b, int64_t place);
+
+/** Confining pressure of bonds (bond_confinement.c): creation of the work array, its place in the state, and its update
+ *  after a step. Without laws that read the pressure the functions do nothing. */
+int bond_confinement_create(BondBased *b, Error *error);
+size_t bond_confinement_bytes(const BondBased *b);
+void bond_confinement_state(void *formulation, const char *part, StateList *list);
+void bond_confinement_commit(void *formulation, bool well);
+
+/** FormulationType.stress (bond_based.c). */
+void bond_stress(const void *formulation, int64_t place, double stress[6]);
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
 void bond_resist_changes(const BondBased *b, const Sweep *sweep);

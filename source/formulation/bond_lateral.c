@@ -65,6 +65,11 @@ int64_t bond_lateral_strains(void *formulation, const Sweep *sweep)
   return -1;
 }
 
+const double *bond_family_strain(const BondBased *b, int64_t place)
+{
+  return b->around + LATERAL_NUMBERS * place + LATERAL_STRAIN;
+}
+
 double bond_elongation_of_pressure(Space space, const double strain[6], const double n[3])
 {
   const double poisson = space == SPACE_PLANE_STRESS ? 1.0 / 3 : 1.0 / 4,

@@ -118,6 +118,14 @@ const double *points_history(const Points *points, int64_t row)
   return points->committed + history_at(points, points_run(points, row), row);
 }
 
+void points_note(const Points *points, int64_t row, int k, double value)
+{
+  double *at = points->committed + history_at(points, points_run(points, row), row) + k;
+  if (*at == value) return;
+  *at = value;
+  untouched_leave(points, row);
+}
+
 void points_take_up(Points *points)
 {
   if (points->history_size) memcpy(points->trial, points->committed, sizeof(double) * points->history_size);

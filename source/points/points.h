@@ -133,6 +133,8 @@ int64_t points_run(const Points *points, int64_t row);
 const Material *points_material(const Points *points, int64_t row);
 /** Committed history of a row. */
 const double *points_history(const Points *points, int64_t row);
+/** Sets value k of the committed history of a row. The trial history follows in the next evaluation. */
+void points_note(const Points *points, int64_t row, int k, double value);
 
 /** The one door to laws: stress, trial history and, where they are kept, tangents of `count` rows, of one run and at most BATCH. In plane
  *  stress the strain zz is found such that the stress zz vanishes.

@@ -35,6 +35,8 @@ int untouched_create(Points *points, Error *error);
 void untouched_destroy(Points *points);
 /** Finds again which rows are untouched: the committed histories were put in place from outside. */
 void untouched_find(Points *points);
+/** Notes that a row is no longer untouched. */
+void untouched_leave(const Points *points, int64_t row);
 /** Gives a batch whose rows are all untouched the history that its law begins with, and a trial one of its own.
  *  @param[out] trial  [UNTOUCHED_NUMBERS]
  *  @return whether they are */

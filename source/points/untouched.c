@@ -76,6 +76,11 @@ void untouched_find(Points *points)
   }
 }
 
+void untouched_leave(const Points *points, int64_t row)
+{
+  if (points->untouched) unmark(points->untouched, row, 1);
+}
+
 bool untouched_batch(const Points *points, int material, int64_t first, int count, breccia_batch *batch, double *trial)
 {
   const Untouched *u = points->untouched;

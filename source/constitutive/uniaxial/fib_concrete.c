@@ -10,7 +10,9 @@
  *   the bond.
  * - The stress of slanted bonds still increases when bonds along the pressure have begun to crush. The law
  *   therefore chooses f and the peak strain of bonds such that a body has the given strength. The body has bonds in all
- *   directions and free sides. */
+ *   directions and free sides.
+ * Pressure in a second direction of the plane raises the strength as Kupfer and Gerstle (1973) measured:
+ *   sigma_1 / f_c = (1 + 3.65 alpha) / (1 + alpha)^2,   alpha = sigma_2 / sigma_1. */
 #include "constitutive/uniaxial/softening.h"
 #include "constitutive/uniaxial/uniaxial_law.h"
 
@@ -25,7 +27,7 @@ typedef struct FibConcrete {
 } FibConcrete;
 
 enum { FIB_STRENGTH = SOFTENING_PARAMETERS, FIB_STRAIN, FIB_ENERGY, FIB_DECAY, FIB_TAIL, FIB_DIMENSIONS };
-enum { FIB_DAMAGE, FIB_CRUSHED, FIB_HISTORY };
+enum { FIB_DAMAGE, FIB_CRUSHED, FIB_CONFINEMENT, FIB_HISTORY };
 
 static const breccia_parameter fib_parameters[] = {
     SOFTENING_PARAMETER_ROWS,
@@ -42,6 +44,9 @@ static const breccia_parameter fib_parameters[] = {
 
 /* Share of the strength at which strains are compared; step and end of curves in peak strains; smallest k. */
 static const double fib_near = 0.95, fib_step = 0.05, fib_reach = 8, fib_least_ratio = 1.02;
+
+/* Share of alpha by which a body of bonds in the plane exceeds its uniaxial strength with bonds that know no pressure. */
+static const double fib_of_bonds = 0.2;
 
 static double fib_envelope(const void *constants, double x, double *slope)
 {
@@ -63,6 +68,29 @@ static double fib_compression(const FibConcrete *c, double strain, double *slope
                above = k * eta - eta * eta;
   *slope = c->strength / c->strain * ((k - 2 * eta) * below - above * (k - 2)) / (below * below);
   return c->strength * above / below;
+}
+
+/** Returns the factor on the compressive strength of bonds under a confining pressure. The biaxial strength is inverted
+ *  for sigma_2 = pressure:
+ *    x = pressure / f_c = alpha (1 + 3.65 alpha) / (1 + alpha)^2,   sigma_1 / f_c = x / alpha.
+ *  A body of bonds carries 1 + 0.2 alpha of this without the factor. */
+static double fib_gain(const FibConcrete *c, double pressure)
+{
+  const double x = pressure / c->body;
+  if (!(x > 0)) return 1;
+  const double a = 3.65 - x, half = (1 - 2 * x) / 2, alpha = (sqrt(half * half + a * x) - half) / a;
+  return alpha < 1 ? fmax(1, x / alpha / (1 + fib_of_bonds * alpha)) : 1;
+}
+
+/** Returns the law under a confining pressure. The peak strain grows with the square of the strength, as by Eurocode 2,
+ *  eq. 3.26. */
+static FibConcrete fib_confined(const FibConcrete *c, double pressure)
+{
+  FibConcrete confined = *c;
+  const double gain = fib_gain(c, pressure);
+  confined.strength *= gain;
+  confined.strain *= gain * gain;
+  return confined;
 }
 
 /** Returns the stress of a bond under monotonic strain; compression is negative. */
@@ -206,7 +234,16 @@ static int fib_history_values(const void *constants)
 static void fib_history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  snprintf(name, size, k == FIB_DAMAGE ? "bond damage" : "crushing strain");
+  snprintf(name, size, "%s",
+           k == FIB_DAMAGE    ? "bond damage"
+           : k == FIB_CRUSHED ? "crushing strain"
+                              : "confining pressure");
+}
+
+static const char *fib_history_dimension(const void *constants, int k)
+{
+  (void)constants;
+  return k == FIB_CONFINEMENT ? "stress" : "";
 }
 
 /** Updates a point whose elastic strain is compressive. Where the loading and unloading branches agree up to round-off
@@ -256,11 +293,13 @@ static int fib_update(const void *constants, const breccia_batch *batch)
                  elastic = p.strain + p.committed[FIB_CRUSHED];
     p.trial[FIB_DAMAGE] = p.committed[FIB_DAMAGE];
     p.trial[FIB_CRUSHED] = p.committed[FIB_CRUSHED];
+    p.trial[FIB_CONFINEMENT] = p.committed[FIB_CONFINEMENT];
     if (batch->elastic_stage) {
       p.stress = c->tension.young * elastic;
       p.tangent = c->tension.young;
     } else if (elastic < 0) {
-      fib_press(c, &p, elastic);
+      const FibConcrete confined = fib_confined(c, p.committed[FIB_CONFINEMENT]);
+      fib_press(&confined, &p, elastic);
     } else {
       fib_pull(c, &p, elastic, lateral);
     }
@@ -276,12 +315,16 @@ const breccia_law law_fib_concrete = {
     .name = "fib-concrete",
     .about = "concrete that cracks as exponential-softening and crushes: the compressive curve of fib Model Code 2010, "
              "then a fall that spends a crushing energy; strengths in compression are those of the body",
-    .source = "fib Model Code 2010, eq. 5.1-26; Nakamura and Higai 2001; Hobbs 2021; docs/theory.md 2",
+    .source = "fib Model Code 2010, eq. 5.1-26; Kupfer and Gerstle 1973; Nakamura and Higai 2001; Hobbs 2021; "
+              "docs/theory.md 2",
     .maturity = "verified against its closed form, and bodies of it against section equilibrium",
-    .equations = "compression positive: f (k η − η²)/(1 + (k − 2) η), η = ε/ε_p, k = E ε_p/f; beyond ε_p "
-                 "f e^(−(ε − ε_p) f l/G_fc); unloading along E\n"
-                 "tension: that of exponential-softening, of the strain beyond the plastic one and beyond the "
-                 "elongation by Poisson's effect of the pressure across the bond",
+    .equations =
+        "compression positive: f (k η − η²)/(1 + (k − 2) η), η = ε/ε_p, k = E ε_p/f; beyond ε_p "
+        "f e^(−(ε − ε_p) f l/G_fc); unloading along E\n"
+        "tension: that of exponential-softening, of the strain beyond the plastic one and beyond the "
+        "elongation by Poisson's effect of the pressure across the bond\n"
+        "confined in the plane by q: f and ε_p times g and g², g = K/(1 + 0.2 α) ≥ 1, K = (1 + 3.65 α)/(1 + α)², "
+        "α K = q/f_c",
     LAW_PARAMETERS(fib_parameters),
     .constants_size = sizeof(FibConcrete),
     .components = 1,
@@ -291,8 +334,10 @@ const breccia_law law_fib_concrete = {
     .softening_energy = softening_start,
     .history_values = fib_history_values,
     .history_name = fib_history_name,
+    .history_dimension = fib_history_dimension,
     .history_is_damage = softening_history_is_damage,
     .update = fib_update,
     .takes_lateral = 1,
     .compressive_strength = fib_compressive_strength,
+    .confined_history = FIB_CONFINEMENT + 1,
 };

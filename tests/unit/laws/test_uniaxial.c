@@ -320,7 +320,7 @@ static void laws_tell_what_they_remember_and_when_they_fail(void **state)
       {"0 bond damage;", peak + (energy - peak / 2) / area},
       {"0 bond damage;", NAN}, /* test below */
       {"0 bond damage;", sqrt(2 * 0.1 / (30e6 * length))},
-      {"0 bond damage;1 crushing strain;", peak + (energy - peak / 2) / area + 0.0022 / 2},
+      {"0 bond damage;1 crushing strain;2 confining pressure;", peak + (energy - peak / 2) / area + 0.0022 / 2},
   };
   for (int k = 0; k < LAWS; ++k) {
     Material m = any(k);
