@@ -3,6 +3,7 @@
  * cracks, and loads do more work than bonds dissipate: failure/crack_wake.c has measured values. */
 #include "domain/toughness.h"
 
+#include "constitutive/min_max.h"
 #include "constitutive/normal_lengths.h"
 #include "failure/crack_wake.h"
 #include "failure/critical_energy.h"
@@ -131,6 +132,28 @@ static void toughness_add_links(const Domain *d, const ToughnessBlock *t, Text *
            d->body.blocks[t->block.block]->head.name, most / least);
 }
 
+/* Ratio of Young's moduli from which a block acts as a stiff inclusion on a block that crushes. */
+static const double toughness_stiff = 2;
+
+/** Adds a warning if a stiff block that cannot crush may press on a block of crushing bonds: both are bonded over a
+ *  horizon, so that the block that crushes does so beside the stiff one first (docs/choosing.md). */
+static void toughness_add_plates(const Domain *d, int block, const Material *m, Text *text)
+{
+  for (int64_t s = 0; s < d->particles->slices; ++s) {
+    const int other = d->particles->block[s];
+    const Material *plate = &d->materials[d->material[s]];
+    if (other == block || plate->law->components != 1 || !isnan(material_compressive_strength(plate)) ||
+        !(material_young(plate) >= toughness_stiff * material_young(m)))
+      continue;
+    text_add(
+        text,
+        "%s: if '%s' is a plate under a jack or on a support, a beam that crushes carries about 15 %% less than its "
+        "section: both are bonded over a horizon; let the load act on particles of '%s' by 'platen: turning'\n",
+        d->body.blocks[block]->head.name, d->body.blocks[other]->head.name, d->body.blocks[block]->head.name);
+    return;
+  }
+}
+
 /** Adds the band of compressive strengths of a lattice of crushing bonds along its axes and diagonals. */
 static void toughness_add_crushing(const Domain *d, const Region *region, int block, const Material *m,
                                    const Units *units, Text *text)
@@ -151,6 +174,7 @@ static void toughness_add_crushing(const Domain *d, const Region *region, int bl
            d->body.blocks[block]->head.name, least, most);
   quantity_describe(units_in_si(units, dimension_find("length"), m->length), "m", text);
   text_add(text, "\n");
+  if (dimensions == 2) toughness_add_plates(d, block, m, text);
 }
 
 void toughness_describe(const Domain *d, const FailureSpec *failure, const Units *units, Text *text)

@@ -1,6 +1,7 @@
 /* Bodies of crushing bonds (fib-concrete): strength of lattices and prisms in uniaxial compression, and the effect of
  * pressure across bonds and of pressure in two directions. */
 #include "base/tensor.h"
+#include "domain/toughness.h"
 #include "solver/reactions.h"
 #include "support.h"
 
@@ -300,9 +301,39 @@ static void a_beam_crushes_under_its_jacks_at_the_moment_of_its_section(void **s
   breccia_model_destroy(&m);
 }
 
+/** Returns true if the words on toughness of a block of crushing bonds warn of a block of a Young's modulus on it. */
+static bool plates_are_told(double young)
+{
+  breccia_model *m = model_of(
+      LAW
+      "  s: {model: elastic-1d, density: 7.85e-9, Young modulus: %g}\n"
+      "body:\n"
+      "  beam: {material: m, lattice: square, spacing: 20, thickness: 100, shape: {box: {from: [0, 0], to: [400, "
+      "100]}}}\n"
+      "  plate: {material: s, lattice: square, spacing: 20, thickness: 100, shape: {box: {from: [160, 100], to: [240, "
+      "140]}}}\n"
+      "peridynamics: {formulation: bond-based, space: plane stress}\nsolve: {explicit: {steps: 1}}\n",
+      33000.0, 38.0, 0.0022, young);
+  Text text = {0};
+  toughness_describe(&m->domain, m->spec->failure, m->units, &text);
+  const bool told = strstr(text.characters, "if 'plate' is a plate under a jack") != NULL;
+  assert_non_null(strstr(text.characters, "pressed one way a body carries"));
+  text_free(&text);
+  breccia_model_destroy(&m);
+  return told;
+}
+
+static void stiff_plates_on_crushing_bonds_are_told(void **state)
+{
+  (void)state;
+  assert_true(plates_are_told(200000));
+  assert_false(plates_are_told(33000));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stiff_plates_on_crushing_bonds_are_told),
       cmocka_unit_test(lattices_crush_at_the_strength_given),
       cmocka_unit_test(pressure_across_counts_in_bodies),
       cmocka_unit_test(pressure_in_two_directions_raises_the_strength),
