@@ -253,7 +253,7 @@ materials: {m: {density: 2400 kg/m3, model: mazars, Young modulus: 30 GPa, Poiss
 body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [12, 6]}}}}
 peridynamics: {space: plane stress}
 loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},
-        {on: {face: x+, layers: 2}, displacement: [free, -0.4 mm], history: {ramp to: 1}}]
+        {on: {face: x+, layers: 2}, displacement: [free, -0.5 mm], history: {ramp to: 1}}]
 solve: {static: {end time: 0.6, increments: 6}}
 Y
 contains "time of a body that cracks" "$("$breccia" check cracks.yaml 2>&1)" "ten to a hundred times that where it cracks"
