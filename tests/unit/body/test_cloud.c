@@ -344,19 +344,20 @@ static void groups_of_a_file_are_selections(void **state)
     const char *on;
     int columns, particles;
   } cases[] = {{"a", 0, 2 * 7}, {"{group: b}", 1, 2 * 7}, {"north wall", 2, 2 * 7}, {"{group: a, face: x+}", 0, 7}};
-  for (int k = 0; k < 4; ++k) {
-    breccia_model *model =
-        model_of("materials: {m: {density: 1.5, " SOLID "}}\nperidynamics: {space: plane strain}\n"
-                 "body: {f: {material: m, lattice: square, thickness: 1, spacing: 0.1, file: " FILE_NAME
-                 "}, g: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [4, 4], "
-                 "first particle: [2, 2]}}}}\n"
-                 "cracks: [{remove: {box: {from: [-1, 0.65], to: [1, 1]}}}]\n"
-                 "loads: [{on: %s, body force: [1, 0]}]\nsolve: {explicit: {steps: 1}}\n",
-                 cases[k].on);
+  static const char *const blocks[] = {
+      "f: {material: m, lattice: square, thickness: 1, spacing: 0.1, file: " FILE_NAME "}",
+      "g: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [4, 4], "
+      "first particle: [2, 2]}}}"};
+  for (int n = 0; n < 8; ++n) { /* the file's block first, or last */
+    const int k = n % 4;
+    breccia_model *model = model_of("materials: {m: {density: 1.5, " SOLID "}}\nperidynamics: {space: plane strain}\n"
+                                    "body: {%s, %s}\ncracks: [{remove: {box: {from: [-1, 0.65], to: [1, 1]}}}]\n"
+                                    "loads: [{on: %s, body force: [1, 0]}]\nsolve: {explicit: {steps: 1}}\n",
+                                    blocks[n / 4], blocks[1 - n / 4], cases[k].on);
     const Selection *selection = &model->loading.loads[0].selection;
     assert_int_equal(selection->count, cases[k].particles);
-    for (int64_t n = 0; n < selection->count; ++n)
-      assert_int_equal(lround(10 * model->domain.particles->position[0][selection->places[n]]) % 4, cases[k].columns);
+    for (int64_t i = 0; i < selection->count; ++i)
+      assert_int_equal(lround(10 * model->domain.particles->position[0][selection->places[i]]) % 4, cases[k].columns);
     breccia_model_destroy(&model);
   }
   char *words =
