@@ -541,6 +541,8 @@ static void what_cannot_be_meant_is_told(void **state)
       {GROUND "initial stress: {surface: 1}\n", "missing key 'K0'"},
       {GROUND "initial stress: {stress: [1, 2, 3]}\n", "expected six numbers, xx, yy, zz, xy, yz, zx; found 3"},
       {GROUND "initial stress: {stress: [1, 2, 3, 4, 0, 0], K0: 0.5}\n", "K0: belongs to 'surface'"},
+      {GROUND "initial stress: {stress: [1, 2, 3, 4, 0, 0], unit weight: 20}\n", "unit weight: belongs to 'surface'"},
+      {GROUND "initial stress: {stress: [1, 2, 3, 4, 0, 0], surcharge: 5}\n", "surcharge: belongs to 'surface'"},
       {GROUND "initial stress: {stress: [1, 2, 3, 4, 5, 0]}\n", "yz is 5; expected 0 in the plane"},
       {GROUND "initial stress: {surface: 1, K0: 0.5}\n", "no gravity acts on the whole body when the run begins"},
       {GROUND "initial stress: {surface: 1, K0: 0.5}\nloads: [{gravity: [0, -10], history: {ramp to: 1}}]\n",
