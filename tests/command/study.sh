@@ -79,6 +79,7 @@ if [ $status = 130 ]; then
   cp -r long-study begun-study
   "$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa' --again --output begun-study | grep 'from its checkpoint' && fail "--again goes on with a case that was stopped"
   contains "going on" "$("$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa')" "1 of 2: E-20-GPa, from its checkpoint"
+  equal "log of both runs of the case" "$(grep -cE '^(stopped|finished) ' long-study/E-20-GPa/log.txt)" 2
 else
   equal "study that ended before it was stopped" $status 0
 fi
