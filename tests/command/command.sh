@@ -200,6 +200,15 @@ equal "history: rows" "$(wc -l < plate/opening.csv)" 12
 "$breccia" run plate.yaml --steps 3 --quiet --output "other folder/deep" > out 2>&1; equal "run --quiet: status" $? 0
 [ -s out ] && fail "run --quiet prints: $(cat out)"
 [ -e "other folder/deep/summary.json" ] || fail "--output is not obeyed"
+# without --output: beside the deck, named after it, whatever points the names of folders have
+mkdir -p parts.d/v1.2
+for deck in parts.d/v1.2/plate parts.d/v1.2/plate.v2.yaml parts.d/v1.2/.plate; do
+  cp plate.yaml $deck
+  (cd parts.d && "$breccia" run ../$deck --steps 1 --quiet) || fail "run $deck"
+done
+equal "folders of results" "$(cd parts.d/v1.2 && find .. -name summary.json | sort)" "../v1.2/.plate.results/summary.json
+../v1.2/plate.results/summary.json
+../v1.2/plate.v2/summary.json"
 touch file; "$breccia" run plate.yaml --steps 3 --output file/x 2> out > /dev/null; equal "output below a file: status" $? 2
 "$breccia" run plate.yaml --steps 3 --output "" > out 2>&1; equal "output without a name: status" $? 2
 
