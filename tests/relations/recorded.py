@@ -321,7 +321,7 @@ def compare(number, outcome, expected):
     if outcome.words != words:
         new = [line for line in outcome.words if line not in words] or outcome.words
         old = [line for line in words if line not in outcome.words] or words
-        messages.append(f"deck {number}: words '{new[0]}', recorded '{old[0]}'")
+        messages.append(f"deck {number}: words '{(new or [''])[0]}', recorded '{(old or [''])[0]}'")
     elif zlib.crc32("\n".join(outcome.names).encode()) != names or len(figures) != len(outcome.figures):
         messages.append(f"deck {number}: results have other names than those recorded")
     else:
