@@ -388,6 +388,7 @@ static int take_up(void *owner, const double *numbers, int64_t count, Error *err
   (void)numbers, (void)count, (void)error;
   Correspondence *c = owner;
   memset(c->fading->mark, TRIED, (size_t)c->particles->slices);
+  memset(c->fading->near, 0, (size_t)c->particles->places);
   const bool softened = find_softened(c);
   set_control(c, softened);
   for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
