@@ -36,7 +36,7 @@ enum {
   INVERTED,     /* particles */
   IMBALANCE,    /* of energies, over the work */
   REDUCTION,    /* factor by which strengths are divided */
-  LOST,         /* factor at which the run found no equilibrium */
+  LOST,         /* strength reduction at which a static run found no equilibrium; NaN: it found all */
   STEP,         /* height of the step in the surface of ground, in spacings */
   EXCESS,       /* estimate of the share by which its factor of safety comes out too high */
   MEASURES

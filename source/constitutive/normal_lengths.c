@@ -12,13 +12,13 @@ static const struct {
   void (*take)(void *constants, const NormalLengths *lengths);
   double (*longest)(const void *constants); /* NULL: no bound */
   bool (*damaged)(const void *constants, const double *history);
-  int length; /* index in the history */
+  int length; /* index of l in the history */
 } normal_lengths_laws[] = {{&law_mazars, mazars_take_lengths, NULL, mazars_is_damaged, MAZARS_LENGTH},
                            {&law_link_damage, link_damage_take_lengths, NULL, link_damage_is_damaged, LINK_LENGTH},
                            {&law_damage_plasticity, damage_plasticity_take_lengths, damage_plasticity_longest,
                             damage_plasticity_is_damaged, PLASTIC_LENGTH}};
 
-/** Returns the index of the law of a material in normal_lengths_laws; -1: the law accepts no lengths. */
+/** Returns the index of the law of a material in normal_lengths_laws; -1 if the law accepts no lengths. */
 static int normal_lengths_find(const Material *material)
 {
   for (size_t k = 0; k < sizeof normal_lengths_laws / sizeof *normal_lengths_laws; ++k)
@@ -51,6 +51,6 @@ void normal_lengths_drop(const Material *material, double *committed)
 {
   const int k = normal_lengths_find(material);
   double *length = &committed[normal_lengths_laws[k].length];
-  /* Histories of zeros are not written: they occupy no memory. */
+  /* A length of 0 is not written: pages of zeros that nobody has written occupy no memory. */
   if (*length > 0 && !normal_lengths_laws[k].damaged(material->constants, committed)) *length = 0;
 }

@@ -2,9 +2,9 @@
  * normal n strains the points with members on both sides of the crack, over a length l(n) that depends on the lattice
  * (after Oliver 1989, Int. J. Numer. Methods Eng. 28, 461, who derives this length for finite elements). When damage
  * begins, a law evaluates l for the first principal strain and stores l in its trial history. Stresses follow the
- * committed l, or while it is 0 the length of the law: l does not change within an evaluation, so that tangents are
- * consistent. A solver that has found equilibrium commits l and continues until equilibrium holds with l
- * (normal_lengths_take). */
+ * committed l, or the length of the law while the committed l is 0. Stresses do not depend on the trial l, so that
+ * tangents are consistent. A solver that has found equilibrium commits l (normal_lengths_take) and continues until
+ * equilibrium holds with l. */
 #ifndef BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 #define BRECCIA_CONSTITUTIVE_NORMAL_LENGTHS_H
 
@@ -32,23 +32,24 @@ bool normal_lengths_give(const struct Material *material, const NormalLengths *l
  *  the law has no such bound. */
 double normal_lengths_longest(const struct Material *material);
 
-/** Commits the trial length of a point whose damage begins; all other history values stay as committed. The law of the
- *  material accepts lengths.
- *  @param[in] trial  history
- *  @param[in,out] committed  history
- *  @return true if the point had no length */
+/** Commits the trial length of a point that has no committed length; all other history values stay as committed. The
+ *  law of the material must accept lengths.
+ *  @param[in] trial          history of the point, [history_values]
+ *  @param[in,out] committed  history of the point, [history_values]
+ *  @return true if a length was committed */
 bool normal_lengths_take(const struct Material *material, const double *trial, double *committed);
 
-/** Clears the committed length of a point whose committed history has no damage. The law of the material accepts
- *  lengths. */
+/** Clears the committed length of a point whose committed history has no damage. The law of the material must accept
+ *  lengths.
+ *  @param[in,out] committed  history of the point, [history_values] */
 void normal_lengths_drop(const struct Material *material, double *committed);
 
-/** Returns the lengths of points [length]. A point whose damage begins takes l of its first principal strain; damaged
- *  points keep the committed length, and all others have 0. The length stays 0 where the first two principal strains are
- *  equal.
+/** Returns the trial lengths of points [length]. Points that are neither damaged nor strained beyond their threshold
+ *  have 0. All others keep their committed length. Without a committed length they take l of their first principal
+ *  strain, or 0 where the first two principal strains are equal.
  *  @param[in] begins     points strained beyond their damage threshold
  *  @param[in] damaged    points with damage in their committed history
- *  @param[in] committed  lengths of the last step, or taken in this one; 0: unknown */
+ *  @param[in] committed  committed lengths of the last step, or of this step (normal_lengths_take) [length]; 0: none */
 LANES_INLINE Lanes normal_lengths_choose(const NormalLengths *lengths, const SpectrumApart *apart, LaneMask begins,
                                          LaneMask damaged, Lanes committed)
 {

@@ -7,16 +7,17 @@
 enum { BENDING_DEPTHS = 3 };
 static const double bending_depths[BENDING_DEPTHS] = {0.3, 0.6, 1.2};
 
-/** Beams of one formulation, law and number of rows (0: with one cohesive crack). */
+/** Bending strengths of beams of one formulation and law. */
 typedef struct BendingRow {
   const char *formulation, *law;
-  double rows;
-  double factor[BENDING_DEPTHS]; /* bending strength over that of a cohesive crack, or its own over f_t, by depth */
+  double rows; /* number of particle rows over the depth; 0: the beam with a cohesive crack */
+  /** By depth [-]. Of particles: bending strength over that of the cohesive crack. Of the crack: that over f_t. */
+  double factor[BENDING_DEPTHS];
 } BendingRow;
 
-/* Copies of the table "Bending strength" of docs/choosing.md, which bench/bending.py writes: default horizon of each
+/* Copy of the table "Bending strength" of docs/choosing.md, which bench/bending.py writes: default horizon of each
  * formulation, plane stress, square lattices, bonds with `surface correction: energy`. The entries of a law are in
- * ascending order of `rows`. */
+ * ascending order of `rows`. The numbers in brackets of that table are in cohesive_beams. */
 static const BendingRow bending_rows[] = {
     {"bond-based", "exponential-softening", 10, {1.09, 1.03, 0.99}},
     {"bond-based", "exponential-softening", 20, {1.19, 1.20, 1.03}},

@@ -331,10 +331,11 @@ bool domain_may_soften(const Domain *domain);
 /** The same of laws of bonds, not of points. */
 bool domain_bonds_may_soften(const Domain *domain);
 /** Commits the lengths by crack normal of points whose damage begins in the trial state, so that the next evaluation
- *  spreads their fracture energy over these lengths. By one thread.
- *  @return number of these points */
+ *  spreads their fracture energy over these lengths (constitutive/normal_lengths.h). Called by one thread.
+ *  @return number of points that had no length before */
 int64_t domain_take_lengths(Domain *domain);
-/** Clears lengths that domain_take_lengths has committed since the last domain_commit_points. By one thread. */
+/** Clears the lengths that domain_take_lengths has committed since the last domain_commit_points. Called by one
+ *  thread. */
 void domain_drop_lengths(Domain *domain);
 /** Makes the trial state of all points the committed one. By one thread. */
 void domain_commit_points(Domain *domain);

@@ -8,10 +8,11 @@ static const double crack_wake_same = 0.02, crack_wake_lattice = 0.1;
 
 /* Results of bench/toughness.py in plane stress at a Poisson ratio of 0.2: cracks along 0, 26.6 and 45 degrees of
  * square lattices, 0 degrees of hexagonal ones, and 0 and 45 degrees of hybrid bonds on hexagonal ones. On square
- * lattices below 3 spacings half of the hybrid bonds across a crack are stranded: other bonds at their limit take so
- * many of their members that they carry nothing, and break without their energy. A limit by which broken bonds account
- * for the fracture energy in the mean over directions at 2.015 spacings (1.57 times as high) would raise the work of
- * loads from 1.35 to 1.53 times the fracture energy to 2.13 to 2.55 times. */
+ * lattices at 1.5 and 2.015 spacings about half of the hybrid bonds across a crack are stranded: bonds that reach their
+ * limit take so many of their members that they carry nothing, and they break without the energy of their limit. The
+ * limit is not raised for stranded bonds. At 2.015 spacings broken bonds would account for the fracture energy, in the
+ * mean over directions, with a limit 1.57 times as high. The work of loads would then be 2.13 to 2.55 times the
+ * fracture energy instead of 1.35 to 1.53 times. */
 static const struct {
   const char *formulation, *criterion, *lattice;
   double spacings, taken[2], felt[2];

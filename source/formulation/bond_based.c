@@ -167,8 +167,9 @@ static void half_state(const void *formulation, double *const *u, double *const 
   for (int k = 0; k < 3; ++k) state[k] = factor * y[k];
 }
 
-/** Returns the elastic strain of a bond of laws. Of a bond between two materials the strains of both laws count by the
- *  tension that each carries: one of them may have torn before the other. */
+/** Returns the elastic strain of a bond whose force follows from laws of points [-]. If the bond joins two materials,
+ *  the result is the mean of the elastic strains of both laws, weighted by the tension that each law carries, because
+ *  one law may have torn before the other. */
 static double bond_elastic_strain(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond,
                                   double stretch)
 {

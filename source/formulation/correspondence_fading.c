@@ -4,12 +4,15 @@
  * Of what C is in families with all their bonds a point keeps the factor
  *   f = least so far of  s : e / e : C_0 : e  times  min(1, w_most / w),
  * the stiffness that the point has left (C_0 the law's first moduli), and what the control may store: w = sum weight z . C z / 2, z = eta - G xi,
- * is what it would store as it was, w_most a share of the energy with which the law begins to soften. The second factor is for points that a
- * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families one of whose
- * members has a neighbour whose factor has fallen before.
+ * is what it would store as it was, w_most a share of the energy with which the law begins to soften. The second factor
+ * is for points that a crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It
+ * applies only to points whose factor, or that of a neighbour or of a neighbour's neighbour, was below 1 in an earlier
+ * step.
  *
- * If control fades with yielding and the influence decreases with distance, a point whose law yields without softening
- * takes the smaller of s : e / e : C_0 : e and
+ * If control fades with yielding, a point whose law yields without softening takes the smallest of s : e / e : C_0 : e,
+ * of the stiffness left in shear,
+ *   s_d : e_d / (2 G e_d : e_d)  with the deviators s_d and e_d,
+ * because the energy of a pressure does not change as ground slides, and, if the influence decreases with distance, of
  *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
  * Slip lines are narrower than families. The strain of a family contains a part of the motion of a slip line; control
  * would resist the other part in addition to the strength of the law.
@@ -27,9 +30,13 @@ static const double most_stored = 0.125;  /* share of the energy at the onset of
 static const double most_resisted = 0.05; /* share of the shear stress of a yielding law that control may carry */
 static const double roundings = 1e-6;     /* loss of stiffness below which a point counts as intact */
 
-/** Marks of slices and of places: a factor was below 1 in some trial; is below 1; is so of a neighbour; is so of a
- *  neighbour's neighbour. */
-enum { TRIED = 1, SOFTENED = 2, BESIDE = 4, NEAR = 8 };
+/** Marks of slices (`mark`) and of places (`near`). */
+enum {
+  TRIED = 1,    /* of slices: a factor was below 1 in some trial */
+  SOFTENED = 2, /* a committed factor is below 1 */
+  BESIDE = 4,   /* of places: the factor of a neighbour is below 1; of slices: some place has BESIDE or NEAR */
+  NEAR = 8      /* of places: the factor of a neighbour's neighbour is below 1 */
+};
 
 struct Fading {
   double *used,
@@ -37,7 +44,7 @@ struct Fading {
   double *found;    /* [places] that step's own, for the one after it */
   double *whole[6]; /* C where nothing has faded; NULL of a uniform control */
   uint8_t *mark;    /* [slices] where it is 0, all factors are 1 */
-  uint8_t *near;    /* [places] SOFTENED, BESIDE, NEAR */
+  uint8_t *near;    /* [places] SOFTENED, BESIDE and NEAR; 0: the stored energy of control is not bounded */
   bool softened;    /* some are below 1 */
 };
 
@@ -70,8 +77,8 @@ static double fading_held(const void *formulation, int64_t place)
   return energy.held;
 }
 
-/** Returns true if a point's law has less than 0.7 of its stiffness left, in all or in shear, as a secant from the
- * unstrained state. */
+/** Returns true if the secant stiffness of a point from the unstrained state, that of all strains or that in shear, is
+ *  less than 0.7 of the first stiffness of its law. */
 static bool has_yielded(const Points *points, const Material *m, int64_t place)
 {
   const double yielded = 0.7;
@@ -165,8 +172,9 @@ static void set_hold(const Correspondence *c, int64_t slice, const double *facto
 
 /* ---- what a step finds ---- */
 
-/** Stiffness that four points have left, over their first one; of a law that yields that of shear, if it is less: what
- * ground stores under pressure does not change as it slides. */
+/** Returns the secant stiffness of four points over the first stiffness of their law [0 to 1]. If control fades with
+ *  yielding and the law does not soften, the secant stiffness in shear if that is less: the energy of a pressure does
+ *  not change as ground slides. */
 LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, const Sweep *sweep, int64_t here)
 {
   Lanes strain[6], work = {0}, deviators = {0}, pressure = {0};
@@ -255,7 +263,7 @@ LANES_INLINE Lanes resisting_share(const Material *m, const Sweep *sweep, int64_
   return lanes_choose(bound, lanes_root(most / lanes_choose(bound, held, lanes_set(1))), lanes_set(1));
 }
 
-/** Places near which a factor has fallen before. */
+/** Returns the places whose factor, or that of a neighbour or of a neighbour's neighbour, was below 1 before. */
 LANES_INLINE LaneMask fading_is_near(const Fading *f, int64_t place)
 {
   LaneMask near = {0};
@@ -311,8 +319,8 @@ static void set_control(Correspondence *c, bool softened)
   for (int64_t slice = 0; slice < c->particles->slices; ++slice) set_hold(c, slice, c->fading->used);
 }
 
-/** Marks the family of a place, whether its bonds have broken or not: a restart marks the same.
- *  @param[in] rings  2: the families of its members, too */
+/** Marks the neighbours of a place. Broken bonds count as intact ones, so that a restart makes the same marks.
+ *  @param[in] rings  1: neighbours, as NEAR; 2: neighbours, as BESIDE, and their neighbours, as NEAR */
 static void fading_mark_family(const Correspondence *c, int64_t place, int rings)
 {
   const Family *f = c->family;
@@ -330,7 +338,7 @@ static void fading_mark_family(const Correspondence *c, int64_t place, int rings
   }
 }
 
-/** Marks a place whose factor has fallen, and those near it. */
+/** Marks a place whose factor is below 1, its neighbours and their neighbours. */
 static void fading_mark_softened(const Correspondence *c, int64_t place)
 {
   c->fading->near[place] |= SOFTENED;
@@ -338,7 +346,8 @@ static void fading_mark_softened(const Correspondence *c, int64_t place)
   fading_mark_family(c, place, 2);
 }
 
-/** Marks places whose factors have fallen. @return whether any have, now or before */
+/** Marks the places whose factors have fallen below 1, and their surroundings.
+ *  @return true if the factor of any place is below 1 */
 static bool find_softened(const Correspondence *c)
 {
   const Fading *f = c->fading;

@@ -76,9 +76,10 @@ struct Ordinary {
                                    bond; NULL: they are 1 */
   float *surfaces; /* [surface_count] which lie here */
   size_t surface_count;
-  int32_t *incomplete; /* [places] index into fourth, negative where there is none; NULL: no family has one */
-  float *fourth;       /* [incomplete_count][ordinary_fourth_count] mean products n n n n of incomplete families
-                                   as they began, by factors */
+  int32_t *incomplete; /* [places] index into `fourth`; negative: none; NULL: all families are complete */
+  /** [incomplete_count][ordinary_fourth_count] mean products n n n n of the incomplete families as they began, weighted
+   *  by w |xi|^2 with the factors of bonds [-]. */
+  float *fourth;
   int32_t incomplete_count;
   OrdinaryDilating *dilating;   /* [patterns] */
   OrdinaryResisting *resisting; /* [patterns] */
@@ -167,12 +168,13 @@ Across ordinary_coupling(Space space, const Material *material);
 void ordinary_balance(const Ordinary *o, int block);
 /** Finds the factors of bonds of families that are not complete (ordinary_families.c). */
 int ordinary_balance_families(Ordinary *o, Error *error);
-/** Number of products n_x^i n_y^j n_z^k of the fourth order. */
+/** Returns the number of products n_x^i n_y^j n_z^k with i + j + k = 4. */
 static inline int ordinary_fourth_count(int dimensions)
 {
   return dimensions == 2 ? 5 : 15;
 }
-/** Index of such a product: i, then j, from 0. */
+/** Returns the index of the product n_x^i n_y^j n_z^k with i + j + k = 4, in ascending order of i, then of j.
+ *  @param[in] power  i, j, k */
 static inline int ordinary_fourth_index(int dimensions, const int power[3])
 {
   return dimensions == 2 ? power[0] : power[0] * (11 - power[0]) / 2 + power[1];

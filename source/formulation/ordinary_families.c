@@ -421,7 +421,7 @@ static void families_find_goals(const FamilyBalance *b)
   team_each(places, families_find_goal, (void *)(uintptr_t)b);
 }
 
-/** Keeps the mean products of the fourth order of a family, from which stress follows (ordinary_stress.c). */
+/** Stores the mean products n n n n of an incomplete family, from which its stress follows (ordinary_stress.c). */
 static void families_keep_fourth(void *context, int64_t place)
 {
   const FamilyBalance *b = context;

@@ -1,11 +1,13 @@
 /* Stress of a particle from the force state of its own family,
- *   sum t y (x) y / |y| V,
- * which is that of the law in a uniform strain if S = sum w |xi|^2 n n n n / m is isotropic. Incomplete families keep
- * some anisotropy (ordinary_families.c): at a flat face in uniform tension the sum is up to 1.16 of the stress, and 0.91
- * in the layers below. With the S of the family as it began, and S_iso the isotropic one, the stress is therefore
- *   Q (A M + b T),  Q = S_iso S^-1,  T = sum w |xi| (e - s) n (x) n,  M = sum w |xi|^2 n (x) n,
- * with a |xi| + b (e - s) the scalar force state and a taking the dilatation from Q T. In complete families of a lattice
- * Q is 1. Broken bonds are missing in T and M but not in Q, so that stress falls with them. */
+ *   sum t y (x) y / |y| V.
+ * In a uniform strain this sum is the stress of the law if S = sum w |xi|^2 n n n n / m is isotropic. Incomplete
+ * families keep some anisotropy (ordinary_families.c): at a flat face in uniform tension the sum is up to 1.16 of the
+ * stress of the law, and 0.91 in the layers below. With the scalar force state a |xi| + b (e - s) the stress is
+ * therefore
+ *   Q (A M + b T),  Q = S_iso S^-1,  T = sum w |xi| (e - s) n (x) n,  M = sum w |xi|^2 n (x) n.
+ * S is that of the family as it began, S_iso the isotropic one, and A is a with the dilatation of Q T instead of that
+ * of T. In complete families of a lattice Q is 1. Broken bonds are left out of T and M but not of Q, so that the stress
+ * decreases as bonds break. */
 #include "formulation/ordinary.h"
 
 #include "base/linear.h"
@@ -16,16 +18,17 @@
 
 enum { MOST_COMPONENTS = 6 };
 
-/** Smallest pivot of S, of trace 1, of families that resist all strains alike: a fifteenth of those of isotropic ones. */
+/** Smallest Cholesky pivot of S, whose trace is 1, with which a family counts as resisting every strain. Isotropic
+ *  families have pivots of at least 2/15. */
 static const double least_pivot = 0.01;
 
-/** Sums over the bonds of a family. */
+/** Sums over the intact bonds of a family. */
 typedef struct StressSums {
-  double force[6];              /* sum t y (x) y / |y| V */
+  double force[6];              /* sum t y (x) y / |y| V [stress] */
   double elastic[6], second[6]; /* T and M, in the reference configuration */
 } StressSums;
 
-/** Components of a symmetric tensor that a space has, and their factor with which products are sums of products. */
+/** Components of a symmetric tensor in a plane or in space: their number and their indices of 0 to 5. */
 typedef struct StressComponents {
   int count, at[MOST_COMPONENTS];
 } StressComponents;
@@ -35,11 +38,13 @@ static StressComponents stress_components(int dimensions)
   return dimensions == 2 ? (StressComponents){3, {XX, YY, XY}} : (StressComponents){6, {XX, YY, ZZ, XY, YZ, ZX}};
 }
 
+/** Returns the factor of a component in Mandel's notation, in which tensors have the products of vectors. */
 static double stress_scale(int component)
 {
   return component < 3 ? 1 : sqrt(2);
 }
 
+/** Computes the sums over the intact bonds of a family. */
 static StressSums stress_sums(const Ordinary *o, int64_t place)
 {
   const Family *f = o->family;
@@ -64,7 +69,10 @@ static StressSums stress_sums(const Ordinary *o, int64_t place)
   return sums;
 }
 
-/** Factors S of an incomplete family. @return false: it does not resist every strain */
+/** Factors S of an incomplete family, in Mandel's notation.
+ *  @param[out] matrix  [count][count] factor of S, count that of stress_components
+ *  @param[out] begin   rows of the factor (base/linear.h)
+ *  @return false if the family does not resist every strain */
 static bool stress_factor(const Ordinary *o, int64_t place, double *matrix, int begin[MOST_COMPONENTS])
 {
   const int d = o->dimensions;
@@ -84,8 +92,11 @@ static bool stress_factor(const Ordinary *o, int64_t place, double *matrix, int 
   return true;
 }
 
-/** Applies Q, with the factors of S. */
-static void stress_straighten(int d, const double *matrix, const int *begin, const double from[6], double to[6])
+/** Multiplies a symmetric tensor by Q.
+ *  @param[in] d              dimensions
+ *  @param[in] matrix, begin  factor of S (stress_factor)
+ *  @param[out] to            product; may be `from` */
+static void stress_make_isotropic(int d, const double *matrix, const int *begin, const double from[6], double to[6])
 {
   const StressComponents on = stress_components(d);
   double x[MOST_COMPONENTS], trace = 0;
@@ -97,21 +108,23 @@ static void stress_straighten(int d, const double *matrix, const int *begin, con
     to[on.at[i]] = (2 * x[i] / stress_scale(on.at[i]) + (on.at[i] < 3 ? trace : 0)) / (d * (d + 2));
 }
 
-/** Adds to a stress what the anisotropy of an incomplete family takes from it. @return change of the dilatation */
+/** Adds the correction for the anisotropy of an incomplete family to the stress of its force state; adds nothing in
+ *  complete families and in those that do not resist every strain.
+ *  @return dilatation of Q T less that of T [-] */
 static double stress_correct(const Ordinary *o, int64_t place, const StressSums *sums, double stress[6])
 {
   const int d = o->dimensions;
   double matrix[MOST_COMPONENTS * MOST_COMPONENTS], straight[6], own[6], wanted[6], f[9], change = 0;
   int begin[MOST_COMPONENTS];
   if (!o->incomplete || o->incomplete[place] < 0 || !stress_factor(o, place, matrix, begin)) return 0;
-  stress_straighten(d, matrix, begin, sums->elastic, straight);
+  stress_make_isotropic(d, matrix, begin, sums->elastic, straight);
   for (int k = 0; k < d; ++k) change += o->inverse[place] * (straight[k] - sums->elastic[k]);
   const double base = o->base[place] + o->shear[place] * ordinary_free(o, place), more = o->volumetric[place] * change;
   for (int k = 0; k < 6; ++k) {
     own[k] = base * sums->second[k] + o->shear[place] * sums->elastic[k];
     wanted[k] = own[k] + more * sums->second[k];
   }
-  stress_straighten(d, matrix, begin, wanted, wanted);
+  stress_make_isotropic(d, matrix, begin, wanted, wanted);
   const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, d, 0);
   shape_gradient(o->family, o->particles->displacement, (int32_t)place, shape.inverse, f);
   for (int k = 0; k < 6; ++k)
@@ -123,7 +136,7 @@ static double stress_correct(const Ordinary *o, int64_t place, const StressSums 
   return change;
 }
 
-/** Across the plane, in plane strain, stress is lambda theta + 2 G p. */
+/** Computes the stress of a particle. In plane strain the stress across the plane is lambda theta + 2 G p. */
 void ordinary_stress(const void *formulation, int64_t place, double stress[6])
 {
   const Ordinary *o = formulation;

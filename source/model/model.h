@@ -12,8 +12,8 @@ typedef struct Peaks { /* over all states written; infinite mean stresses: none 
   double displacement, velocity, octahedral, mean_low, mean_high, damage;
   /** Principal Green-Lagrange strains of laws that flow or soften under this measure (run_strains.c); 0: none. */
   double strain_low, strain_high;
-  /** Factors of a strength reduction at rest (run_measures.c): the first one at which control of zero-energy modes held
-   *  too much, 0: at none; the last one before. */
+  /** Strength reductions of states at rest (run_note_reduction): the first in which control of zero-energy modes held
+   *  more than run_most_sliding, 0: none; the last before that, 0: none. */
   double reduction_held, reduction_free;
 } Peaks;
 

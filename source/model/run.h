@@ -68,9 +68,12 @@ void run_tell_loads(const breccia_model *model, Text *text);
 extern const double run_most_control;
 /** Sums of the energies of all places whose points have yielded. */
 YieldedEnergy run_yielded_energy(const Domain *domain);
-/** Share of the energy beside yielded laws that control of zero-energy modes may hold where a strength reduction acts. */
+/** Share of the energy of yielded points (YieldedEnergy) above which control of zero-energy modes holds ground that
+ *  would slide under a strength reduction [-]. */
 extern const double run_most_sliding;
-/** Notes from which factor of a strength reduction on control of zero-energy modes holds more, in stages that rest. */
+/** Records the first strength reduction at which the share of control exceeds run_most_sliding, and the last one before
+ *  (Peaks). Does nothing in stages that do not end at rest.
+ *  @return BRECCIA_OK; otherwise as domain_observe */
 int run_note_reduction(breccia_model *model, Error *error);
 /** Adds to summary.json by what measures a body bears its loads, beside forces out of balance and kinetic energy. */
 void run_add_measures(const breccia_model *model, Text *text);

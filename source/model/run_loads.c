@@ -146,7 +146,8 @@ static void run_loads_tell_resultant(const breccia_model *model, const Load *loa
   text_add(t, "\n");
 }
 
-/** Returns true if a motion that only presses has moved and has had no force at any time that was looked at. */
+/** Returns true if a load that only presses prescribes a motion other than 0 and exerted no force in any state that was
+ *  evaluated. */
 static bool run_loads_missed(const breccia_model *model, const Load *load, const Resultant *r)
 {
   const Loading *loading = &model->loading;
@@ -157,7 +158,7 @@ static bool run_loads_missed(const breccia_model *model, const Load *load, const
          run_loads_peak(model, load) != 0;
 }
 
-/** Warns of motions that only press and never did. */
+/** Adds a warning for each load that only presses and never pressed. */
 static void run_loads_tell_missed(const breccia_model *model, const Resultant *resultants, Text *t)
 {
   for (int k = 0; k < model->loading.count; ++k) {

@@ -9,7 +9,7 @@
 #include <string.h>
 
 const double run_most_control = 0.05;
-const double run_most_sliding = 0.25; /* control that fades has held slopes beyond their limit with half of it */
+const double run_most_sliding = 0.25; /* fading control has held slopes beyond their limit with twice that share */
 
 YieldedEnergy run_yielded_energy(const Domain *d)
 {

@@ -385,7 +385,7 @@ static void tell_control(const Domain *d, double stored, Text *t)
              100 * yielded.lasting / stored);
 }
 
-/** Warns where control of zero-energy modes held ground that slides, from a factor of a strength reduction on. */
+/** Warns of the strength reduction from which on control of zero-energy modes held ground that would slide. */
 static void tell_held(const breccia_model *model, Text *t)
 {
   const Peaks *p = &model->peaks;

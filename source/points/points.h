@@ -196,9 +196,9 @@ bool points_are_linear(const Points *points);
 void points_state(Points *points, const char *of, StateList *list);
 
 /** Commits the lengths by crack normal of rows whose damage begins in the trial state (constitutive/normal_lengths.h).
- *  @return number of rows that had no length */
+ *  @return number of rows that had no length before */
 int64_t points_take_lengths(Points *points);
-/** Clears lengths that points_take_lengths has committed since the last points_commit. */
+/** Clears the lengths that points_take_lengths has committed since the last points_commit. */
 void points_drop_lengths(Points *points);
 
 /** Makes the trial state the committed one. */

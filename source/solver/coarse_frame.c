@@ -5,9 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the whole below which a difference of moments counts as round-off. */
+/* Difference of two moments over their sum below which the moments count as equal. */
 static const double frame_roundings = 1e-6;
 
+/** Finds the centre of volume [length]. */
 static void frame_find_centre(const Particles *p, double centre[3])
 {
   double volume = 0, sum[3] = {0};
@@ -19,7 +20,7 @@ static void frame_find_centre(const Particles *p, double centre[3])
   for (int k = 0; k < 3; ++k) centre[k] = sum[k] / volume;
 }
 
-/** Second moments about a point. */
+/** Computes the second moments of volume about a point. */
 static void frame_find_moments(const Particles *p, const double centre[3], double moments[6])
 {
   memset(moments, 0, 6 * sizeof *moments);
@@ -32,8 +33,9 @@ static void frame_find_moments(const Particles *p, const double centre[3], doubl
   }
 }
 
-/** Turns two axes in their plane: to the principal axes of the second moments, or of the fourth if those are equal. With
- *  z = x + i y along the two axes the sums of V z^2 and V z^4 turn by two and four times the angle of the body. */
+/** Turns two axes in their plane to the principal axes of the second moments, or to those of the fourth moments if the
+ *  second moments are equal; leaves the axes if the fourth moments are equal, too. With z = x + i y along the two axes,
+ *  the arguments of the sums of V z^2 and V z^4 are two and four times the angle of the body. */
 static void frame_turn_in_plane(const Particles *p, const double centre[3], double first[3], double second[3])
 {
   double complex sums[2] = {0};
@@ -64,14 +66,15 @@ static void frame_turn_in_plane(const Particles *p, const double centre[3], doub
   }
 }
 
-/** Axes of a body in space. */
+/** Finds the axes of a body in space; leaves them if all second moments are equal.
+ *  @param[in,out] axes  those of the deck before */
 static void frame_find_in_space(const Particles *p, const double centre[3], double axes[9])
 {
   double moments[6], value[3], vector[9], sum = 0;
   frame_find_moments(p, centre, moments);
   tensor_eigen(moments, value, vector);
   for (int k = 0; k < 3; ++k) sum += fabs(value[k]);
-  bool alike[3]; /* the k-th moment and the next */
+  bool alike[3]; /* the k-th second moment and the next are equal */
   int pairs = 0;
   for (int k = 0; k < 3; ++k) {
     alike[k] = fabs(value[k] - value[(k + 1) % 3]) <= frame_roundings * sum;

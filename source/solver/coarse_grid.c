@@ -23,9 +23,9 @@ static const double width = 4.0 / 3, added = 1e-6;
 
 struct CoarseGrid {
   const Domain *domain;
-  int axes; /* of unknowns at a corner */
-  bool any_pose;
-  double centre[3], frame[9]; /* its axes, a unit vector in each row, through a point */
+  int axes;                   /* of unknowns at a corner */
+  bool any_pose;              /* the axes of the grid turn with the body */
+  double centre[3], frame[9]; /* origin of the axes of the grid [length]; [3][3] their unit vectors, one in each row */
   int elements[3], points[3];
   double low[3], size[3];
   int64_t element_count;      /* with particles */
@@ -47,8 +47,8 @@ struct CoarseGrid {
 
 /* ---- laying it ---- */
 
-/** Coordinate of a position along an axis of the grid. */
-static double along_axis(const CoarseGrid *g, int axis, const double position[3])
+/** Returns the coordinate of a position along an axis of the grid [length]. */
+static double grid_coordinate(const CoarseGrid *g, int axis, const double position[3])
 {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += g->frame[3 * axis + k] * (position[k] - g->centre[k]);
@@ -60,7 +60,7 @@ static int64_t locate(const CoarseGrid *g, const double position[3], double at[3
 {
   int64_t number = 0;
   for (int k = 2; k >= 0; --k) {
-    const double x = (along_axis(g, k, position) - g->low[k]) / g->size[k];
+    const double x = (grid_coordinate(g, k, position) - g->low[k]) / g->size[k];
     int n = (int)x;
     if (n >= g->elements[k]) n = g->elements[k] - 1;
     if (n < 0) n = 0;
@@ -89,6 +89,7 @@ static double divide(CoarseGrid *g, const double high[3], double size)
 {
   double count = 1;
   for (int k = 0; k < 3; ++k) {
+    /* The extent along turned axes has round-off, which must not decide on the number of elements. */
     const double extent = high[k] - g->low[k], number = fmax(1, floor(extent / size + (g->any_pose ? 1e-9 : 0)));
     g->elements[k] = (int)fmin(number, INT_MAX - 1);
     g->points[k] = g->elements[k] + 1;
@@ -130,8 +131,9 @@ static bool mark_elements(CoarseGrid *g, Error *error)
   return true;
 }
 
-/** Bounds of the body along the axes of the grid. */
-static void find_bounds(CoarseGrid *g, double high[3])
+/** Finds the bounds of the body along the axes of the grid [length].
+ *  @param[out] high  upper bounds; the lower ones are in the grid */
+static void grid_find_bounds(CoarseGrid *g, double high[3])
 {
   const Particles *p = g->domain->particles;
   for (int k = 0; k < 3; ++k) {
@@ -142,8 +144,8 @@ static void find_bounds(CoarseGrid *g, double high[3])
     const int32_t i = p->place_of[n];
     const double position[3] = {p->position[0][i], p->position[1][i], p->position[2][i]};
     for (int k = 0; k < 3; ++k) {
-      g->low[k] = fmin(g->low[k], along_axis(g, k, position));
-      high[k] = fmax(high[k], along_axis(g, k, position));
+      g->low[k] = fmin(g->low[k], grid_coordinate(g, k, position));
+      high[k] = fmax(high[k], grid_coordinate(g, k, position));
     }
   }
 }
@@ -152,7 +154,7 @@ static void find_bounds(CoarseGrid *g, double high[3])
 static bool choose_elements(CoarseGrid *g, Error *error)
 {
   double high[3], size = width * g->domain->family.horizon;
-  find_bounds(g, high);
+  grid_find_bounds(g, high);
   for (;; size *= 1.1) {
     if (divide(g, high, size) > MOST_ELEMENTS) continue;
     if (!mark_elements(g, error) || !mark_corners(g, NULL, &g->corner_count, error)) return false;
@@ -258,8 +260,10 @@ static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double sti
   if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
 }
 
-/** Adds the moduli of the particles of an element, times their volumes over its own. */
-static void add_moduli(const CoarseGrid *g, int64_t e, double factor, bool linearised, ElementModuli *sum)
+/** Adds the moduli of the particles of an element, weighted by their volumes.
+ *  @param[in] factor  of the weights, with the reciprocal of the volume of an element
+ *  @param[in,out] sum  moduli of the element */
+static void grid_add_moduli(const CoarseGrid *g, int64_t e, double factor, bool linearised, ElementModuli *sum)
 {
   for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
     const ElementModuli moduli = element_moduli(g->domain, g->place[n], linearised);
@@ -268,9 +272,13 @@ static void add_moduli(const CoarseGrid *g, int64_t e, double factor, bool linea
   }
 }
 
-/** Adds the moduli of the particles of an element to its corners, by their shares there: a particle on the border of two
- *  elements counts alike in both, to whichever it belongs. */
-static void add_moduli_at_corners(const CoarseGrid *g, int64_t e, double factor, bool linearised, ElementModuli *corner)
+/** Adds the moduli of the particles of an element to its corners, weighted by the volumes of the particles and by their
+ *  shape functions. Round-off decides to which of two elements a particle on their border belongs; the sums at the
+ *  corners do not depend on it.
+ *  @param[in] factor  of the weights, with the reciprocal of the volume of an element
+ *  @param[in,out] corner  [corner_count] moduli */
+static void grid_add_moduli_at_corners(const CoarseGrid *g, int64_t e, double factor, bool linearised,
+                                       ElementModuli *corner)
 {
   for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
     double at[3], share[CORNERS];
@@ -285,8 +293,9 @@ static void add_moduli_at_corners(const CoarseGrid *g, int64_t e, double factor,
   }
 }
 
-/** Moduli of an element from those at its corners, each of which is shared by the elements that touch it. */
-static ElementModuli moduli_of_corners(const CoarseGrid *g, int64_t e, const ElementModuli *corner)
+/** Returns the moduli of an element from those at its corners. The elements that touch a corner share its moduli
+ *  equally. */
+static ElementModuli grid_moduli_of_corners(const CoarseGrid *g, int64_t e, const ElementModuli *corner)
 {
   ElementModuli sum = {0};
   for (int c = 0; c < 1 << g->axes; ++c) {
@@ -299,9 +308,9 @@ static ElementModuli moduli_of_corners(const CoarseGrid *g, int64_t e, const Ele
   return sum;
 }
 
-/** Component (r, s) of a block of the stiffness along the axes of the deck.
- *  @param[in] block  [axes][axes] along the axes of the grid */
-static double turn_back(const CoarseGrid *g, const double block[9], int r, int s)
+/** Returns the component (r, s), along the axes of the deck, of a 3 x 3 block of the stiffness.
+ *  @param[in] block  [3][3] components along the axes of the grid */
+static double grid_turn_back(const CoarseGrid *g, const double block[9], int r, int s)
 {
   double sum = 0;
   for (int k = 0; k < g->axes; ++k)
@@ -309,7 +318,10 @@ static double turn_back(const CoarseGrid *g, const double block[9], int r, int s
   return sum;
 }
 
-static void add_element(CoarseGrid *g, int64_t e, const ElementStiffness *unit, ElementModuli moduli)
+/** Adds the stiffness of an element to the equations of the grid.
+ *  @param[in] unit    stiffness of an element for unit moduli, along the axes of the grid
+ *  @param[in] moduli  of the element */
+static void grid_add_element(CoarseGrid *g, int64_t e, const ElementStiffness *unit, ElementModuli moduli)
 {
   const int axes = g->axes;
   for (int a = 0; a < 1 << axes; ++a)
@@ -321,11 +333,15 @@ static void add_element(CoarseGrid *g, int64_t e, const ElementStiffness *unit, 
                              moduli.shear * unit->shear[a * axes + r][b * axes + s];
       for (int r = 0; r < axes; ++r)
         for (int s = 0; s < axes; ++s)
-          add(g, e, a, r, b, s, g->any_pose ? turn_back(g, block, r, s) : block[3 * r + s]);
+          add(g, e, a, r, b, s, g->any_pose ? grid_turn_back(g, block, r, s) : block[3 * r + s]);
     }
 }
 
-static int add_elements(CoarseGrid *g, double factor, bool linearised, Error *error)
+/** Adds the stiffness of all elements to the equations of the grid.
+ *  @param[in] factor  of the stiffness
+ *  @param[in] linearised  take the moduli of the linearised laws; otherwise the first ones
+ *  @return BRECCIA_OK; BRECCIA_FAILURE without memory */
+static int grid_add_elements(CoarseGrid *g, double factor, bool linearised, Error *error)
 {
   ElementStiffness unit;
   double volume = 1;
@@ -335,14 +351,14 @@ static int add_elements(CoarseGrid *g, double factor, bool linearised, Error *er
   for (int k = 0; k < g->axes; ++k) volume *= g->size[k];
   element_stiffness(g->axes, g->size, &unit);
   for (int64_t e = 0; e < g->element_count && corner; ++e)
-    add_moduli_at_corners(g, e, factor / volume, linearised, corner);
+    grid_add_moduli_at_corners(g, e, factor / volume, linearised, corner);
   for (int64_t e = 0; e < g->element_count; ++e) {
     ElementModuli moduli = {0};
     if (corner)
-      moduli = moduli_of_corners(g, e, corner);
+      moduli = grid_moduli_of_corners(g, e, corner);
     else
-      add_moduli(g, e, factor / volume, linearised, &moduli);
-    add_element(g, e, &unit, moduli);
+      grid_add_moduli(g, e, factor / volume, linearised, &moduli);
+    grid_add_element(g, e, &unit, moduli);
   }
   free(corner);
   return BRECCIA_OK;
@@ -500,7 +516,7 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
   g->turning = turning;
-  int status = add_elements(g, 1 + stiffness_share, linearised, error);
+  int status = grid_add_elements(g, 1 + stiffness_share, linearised, error);
   unknowns_each_row(u, add_support, g);
   if (!status) status = add_springs(g, u, mass_factor, error);
   if (!status) status = coarse_grid_factor(g, error);

@@ -11,9 +11,10 @@
 
 typedef struct CoarseGrid CoarseGrid;
 
-/** Lays the grid over the body: elements at least 4/3 horizons wide, and so wide that it has few corners.
- *  @param[in] any_pose  its axes turn with the body (coarse_frame.h), and what it answers is the same for each pose, up to
- *                       round-off; else they are those of the deck. For bodies without rotations */
+/** Lays the grid over the body: elements at least 4/3 horizons wide, and so wide that the grid has few corners.
+ *  @param[in] any_pose  true: the axes of the grid turn with the body, and the correction is the same for each pose, up
+ *                       to round-off (coarse_frame.h); only for bodies without rotations. false: they are those of the
+ *                       deck */
 CoarseGrid *coarse_grid_create(const Domain *domain, bool any_pose, Error *error);
 void coarse_grid_destroy(CoarseGrid **grid);
 

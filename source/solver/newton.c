@@ -454,7 +454,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
       bool again;
       outcome = newton_take_lengths(n, time, &again, error);
       if (outcome != NEWTON_CONVERGED) return outcome;
-      if (again) { /* as at the beginning of an increment */
+      if (again) { /* continue with the pace of the beginning of an increment */
         force = newton_size_of_forces(n, n->force);
         pace.least = INFINITY;
         pace.since = 0;

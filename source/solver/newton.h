@@ -144,9 +144,9 @@ bool newton_has_gone_far(const Newton *newton);
  *  @return that the laws could be asked, or that the solution is to stop */
 NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
-/** Commits the lengths by crack normal of points whose damage begins (domain_take_lengths), at equilibrium with other
- *  lengths, and evaluates forces with them.
- *  @param[out] again  true if forces are out of balance with these lengths
+/** Commits the lengths by crack normal of points whose damage begins (domain_take_lengths) and evaluates forces with
+ *  these lengths. Called at an equilibrium that was found without them.
+ *  @param[out] again  true if forces are out of balance with these lengths, so that the iteration must continue
  *  @return as newton_find_forces */
 NewtonOutcome newton_take_lengths(Newton *newton, double time, bool *again, Error *error);
 

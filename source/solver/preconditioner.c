@@ -36,7 +36,8 @@ size_t preconditioner_bytes(const Preconditioner *m)
 double preconditioner_probe(const Preconditioner *m, const LinearSolver *s, double phase, int row, int64_t place)
 {
   const Particles *p = s->domain->particles;
-  const double waves = 1000; /* radians over a horizon: neighbours have nothing in common, and round-off is small */
+  /* Radians over a horizon: enough for uncorrelated motions of neighbours, few enough for small round-off. */
+  const double waves = 1000;
   double from[3], square = 0;
   for (int k = 0; k < 3; ++k) {
     from[k] = p->position[k][place] - m->centre[k];
@@ -48,11 +49,12 @@ double preconditioner_probe(const Preconditioner *m, const LinearSolver *s, doub
   return r > 0 ? size * from[row % 3] / r : 0;
 }
 
+/** Data of the sweeps that estimate the diagonal. */
 typedef struct Probing {
   Preconditioner *m;
   LinearSolver *solver;
-  double *const *v, *const *kv;
-  int probe;
+  double *const *v, *const *kv; /* the probe and its product with K */
+  int probe;                    /* number of the probe, 0 to PROBES - 1 */
 } Probing;
 
 /** 1 or -1, as if at random, of a row of motion of a probe at a place (SplitMix64). */
@@ -66,7 +68,7 @@ static double sign(int probe, int row, int64_t place)
   return x >> 63 ? 1 : -1;
 }
 
-/** A probe at a place: rotations as large as displacements. */
+/** Returns the component of a probe in a row of motion at a place; rotations have the size of displacements. */
 static double probe_of(const Probing *p, int probe, int row, int64_t place)
 {
   if (p->solver->domain->particles->number[place] < 0) return 0;
@@ -75,7 +77,7 @@ static double probe_of(const Probing *p, int probe, int row, int64_t place)
   return size / unknowns_length(&p->solver->unknowns, row);
 }
 
-static void fill_with_probe(void *context, int64_t b)
+static void probe_fill_batch(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
@@ -101,8 +103,9 @@ static double guess(const Domain *d, int64_t i)
   return d->particles->volume[i] * (m->bulk + 4 * m->shear / 3) * fmax(1, family_count(&d->family, (int32_t)i));
 }
 
-/** Squares of all probes at a place, summed over rows of motion. */
-static double squares_of_probes(const Preconditioner *m, int rows)
+/** Returns the sum of the squares of all probes at a place over some rows of motion. With any_pose the phases of three
+ *  sines are a third of a turn apart, and the sum of their squares is 3/2 everywhere. */
+static double probes_square_sum(const Preconditioner *m, int rows)
 {
   return m->any_pose ? PROBES / 2.0 : PROBES * rows;
 }
@@ -112,7 +115,7 @@ static void finish_turning(Preconditioner *m, const LinearSolver *s)
 {
   const Domain *d = s->domain;
   const double length = s->unknowns.length,
-               share = length * length / squares_of_probes(m, d->particles->motions - ROTATION), least = 0.2,
+               share = length * length / probes_square_sum(m, d->particles->motions - ROTATION), least = 0.2,
                nothing = 1e-10;
   double found = 0, expected = 0;
   for (int64_t i = 0; i < d->particles->places; ++i) {
@@ -127,8 +130,9 @@ static void finish_turning(Preconditioner *m, const LinearSolver *s)
                         : fmax(m->turning[i] * share, least * factor * length * length * m->diagonal[i]);
 }
 
-/** Returns the share of a probe at a place that is left in the unknowns, at least a quarter: the rest is held. */
-static double free_share(const Probing *p, int64_t place)
+/** Returns the share of the square of a probe at a place that belongs to unknowns, at least a quarter: supports hold
+ *  the other displacements. */
+static double probe_free_share(const Probing *p, int64_t place)
 {
   const double least = 0.25;
   double whole = 0, left = 0;
@@ -140,21 +144,21 @@ static double free_share(const Probing *p, int64_t place)
   return whole > 0 ? fmax(least, left / whole) : 1;
 }
 
-/** The mean of v K v over random vectors v is the diagonal (Bekas, Kokiopoulou and Saad 2007, Appl. Numer. Math. 57,
- *  1214): what stands beside it averages out, and is small where families are large. Whatever they say, the diagonal is
- *  not less than a share of what its particle's family makes expected: in what softens K is not positive, but M must
- *  be. */
+/** Estimates the diagonal of K as the mean of the products v_i (K v)_i over pseudo-random vectors v (Bekas, Kokiopoulou
+ *  and Saad 2007, Appl. Numer. Math. 57, 1214). The terms of other entries of K average out, and are small where
+ *  families are large. The estimate is bounded from below by a share of the value expected from the family of a
+ *  particle, because K of a softening body is not positive, but M must be. */
 static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
 {
   const Domain *d = s->domain;
   const int64_t places = d->particles->places;
-  const double share = 1 / squares_of_probes(m, d->body.dimensions), least = 0.2;
+  const double share = 1 / probes_square_sum(m, d->body.dimensions), least = 0.2;
   double cross[2] = {0}, found = 0, expected = 0;
   memset(m->diagonal, 0, sizeof(double) * (size_t)places);
   if (m->turning) memset(m->turning, 0, sizeof(double) * (size_t)places);
   for (int probe = 0; probe < PROBES; ++probe) {
     Probing p = {m, s, v, kv, probe};
-    team_each(d->batch_count, fill_with_probe, &p);
+    team_each(d->batch_count, probe_fill_batch, &p);
     linear_solver_apply(s, v, kv);
     unknowns_clear_rest(&s->unknowns, v);
     team_each(d->batch_count, add_products, &p);
@@ -166,7 +170,7 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MO
   for (int64_t i = 0; i < places; ++i) {
     if (d->particles->number[i] < 0) continue;
     size += fabs(m->diagonal[i]);
-    if (m->any_pose) m->diagonal[i] /= free_share(&last, i);
+    if (m->any_pose) m->diagonal[i] /= probe_free_share(&last, i);
     found += m->diagonal[i] * share;
     expected += guess(d, i);
   }

@@ -13,16 +13,17 @@
 typedef struct Preconditioner {
   double *diagonal; /* [places] mean over the axes; infinite: nothing holds the particle, and it stays where it is */
   double *turning;  /* [places] the same of rotations; NULL without them */
-  double centre[3]; /* of the volume (length) */
+  double centre[3]; /* centre of volume of the body [length]; only with any_pose */
   CoarseGrid *grid;
-  bool
-      any_pose; /* the diagonal is that of the body in each pose; else it depends on the axes and on the order of places */
+  bool any_pose;     /* as preconditioner_create was given */
   bool is_symmetric; /* K, as far as two products tell */
 } Preconditioner;
 
-/** @param[in] any_pose  what it makes of forces is the same for each pose of the body: its place and direction in space, and
- *                       the order of its particles, up to round-off. Bodies with rotations have no coarse grid then. Else it
- *                       depends on the axes of the deck */
+/** Allocates a preconditioner, which must be zero before; preconditioner_prepare assembles it.
+ *  @param[in] any_pose  true: M is the same for each pose of the body (solver/coarse_frame.h), up to round-off, and
+ *                       bodies with rotations have no coarse correction. false: M depends on the axes of the deck and
+ *                       on the order of places
+ *  @return BRECCIA_OK; BRECCIA_FAILURE without memory */
 int preconditioner_create(Preconditioner *preconditioner, const Domain *domain, bool any_pose, Error *error);
 void preconditioner_destroy(Preconditioner *preconditioner);
 
@@ -34,11 +35,12 @@ int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver,
 /** v = M^-1 f, both vectors of unknowns. */
 void preconditioner_apply(const Preconditioner *preconditioner, const LinearSolver *solver, double *const f[MOTIONS],
                           double *const v[MOTIONS]);
-/** A motion of all particles that looks random: along the line from the centre of the body, by the sine of the distance
- *  (1000 radians over a horizon). It turns with the body, and knows no order of particles, so that what is found by it
- *  is the same for each pose of a body.
- *  @param[in] phase  of the sine (rad)
- *  @return the component of a row of motion at a place; 0 in unused places */
+/** Returns a component of a pseudo-random motion that turns with the body and does not depend on the order of
+ *  particles. Each particle moves along the line from the centre of the body, by the sine of its distance (1000 radians
+ *  over a horizon). Rotations about the normal of a plane have that sine, too. Only with any_pose.
+ *  @param[in] phase  of the sine [rad]
+ *  @param[in] row    row of motion
+ *  @return component of the motion, 1 at most; 0 in unused places */
 double preconditioner_probe(const Preconditioner *preconditioner, const LinearSolver *solver, double phase, int row,
                             int64_t place);
 

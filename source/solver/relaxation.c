@@ -13,7 +13,7 @@ static const double highest = 4 / 1.1;
 int relaxation_create(Relaxation *r, Newton *n, Error *error)
 {
   const Particles *p = n->domain->particles;
-  const bool any_pose = domain_bonds_may_soften(n->domain); /* see relaxation.h */
+  const bool any_pose = domain_bonds_may_soften(n->domain); /* several equilibria may be close (relaxation.h) */
   r->prepared = NAN;
   n->linear.elastic = &r->elastic;
   const bool failed = elastic_step_create(&r->elastic, n->domain, error) ||
@@ -223,11 +223,11 @@ static NewtonOutcome keep_pace(Relaxation *r, Newton *n, Pace *pace, double time
   return NEWTON_CONVERGED;
 }
 
-/** Takes steps of the motion until the forces out of balance are below the tolerance.
- *  @param[in] most  iterations
- *  @param[in,out] damping  of the next step */
-static NewtonOutcome come_to_rest(Relaxation *r, Newton *n, Pace *pace, double time, int64_t most, double *damping,
-                                  Error *error)
+/** Takes steps of the motion until the residual is below its tolerance.
+ *  @param[in] most         number of iterations, from those already taken on
+ *  @param[in,out] damping  damping coefficient of the next step [-] */
+static NewtonOutcome relaxation_come_to_rest(Relaxation *r, Newton *n, Pace *pace, double time, int64_t most,
+                                             double *damping, Error *error)
 {
   const int64_t last = n->iterations + most;
   NewtonOutcome outcome;
@@ -269,7 +269,8 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   Pace pace = {.look = LOOKED_AT_EVERY, .patience = LOOKED_AT_EVERY, .last = INFINITY};
   vectors_clear(r->momentum, n->domain->particles);
   for (bool again = true; again;) {
-    if ((outcome = come_to_rest(r, n, &pace, time, most, &damping, error)) != NEWTON_CONVERGED) return outcome;
+    if ((outcome = relaxation_come_to_rest(r, n, &pace, time, most, &damping, error)) != NEWTON_CONVERGED)
+      return outcome;
     if ((outcome = newton_take_lengths(n, time, &again, error)) != NEWTON_CONVERGED) return outcome;
     if (!again) break;
     n->unbalanced = find_unbalanced(n);

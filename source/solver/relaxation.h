@@ -10,8 +10,8 @@
  * found does not remember how the body swung. What is prescribed moves at once, and all particles with it as in an elastic body; put in at once without
  * them, it strained what is near it ten times as much, and took twice as many steps.
  *
- * Where bonds soften several states of rest may be near, and the way to rest decides to which the body comes. The mass is then
- * the same for each pose of the body, and so is the way.
+ * Where bonds soften, several equilibria may be close to each other, and the path of the relaxation decides which of
+ * them is found. The mass, and with it the path, is then the same for each pose of the body (coarse_frame.h).
  *
  * Where few bonds hold the body together its slowest motion is far slower than those for which the mass is right, and comes to rest in thousands of steps. There the
  * body is moved once more as an elastic one would answer, with a mass for the bonds that are left.

@@ -53,7 +53,7 @@ typedef struct StageRecord {
   double growing;                           /* number of looks in a row by which the body has come no nearer to rest */
   double descended,
       relaxed; /* increments in which Newton's method did not come to rest, and whose ends descent by secants, and dynamic relaxation found */
-  double lost_reduction; /* strength reduction at which no equilibrium was found, which ended the stage; 0: none */
+  double lost_reduction; /* strength reduction whose increment ended the stage without equilibrium [-]; 0: none did */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 

@@ -149,8 +149,8 @@ static void end_now(Clock *clock)
   clock->stage_end = clock->time;
 }
 
-/** Counts an increment of no length as the last one of the stage. */
-static void take_no_time(Clock *clock)
+/** Counts an increment of zero length as the last one of the stage. */
+static void static_count_empty_increment(Clock *clock)
 {
   ++clock->step;
   clock->stage_last = clock->step;
@@ -269,9 +269,9 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
   end_now(clock);
 }
 
-/** Returns true if a strength reduction, and no other load, has grown since the beginning of the stage, which is the
- *  last one: where no equilibrium is found the stage has found its factor. */
-static bool finds_reduction(const Solver *run)
+/** Returns true if the stage determines a factor of safety: the stage is the last one, a strength reduction has grown
+ *  since its beginning, and no other load has changed. The loss of equilibrium is then the result, not a failure. */
+static bool static_finds_reduction(const Solver *run)
 {
   const Clock *clock = &run->clock;
   const double begin = run->records[clock->stage].begin;
@@ -478,13 +478,13 @@ int static_advance(Solver *run, Text *warning, Error *error)
       }
       if (static_hands_over(s->spec)) {
         hand_over(run, outcome, settled, warning);
-        take_no_time(clock);
+        static_count_empty_increment(clock);
         break;
       }
-      if (finds_reduction(run)) {
+      if (static_finds_reduction(run)) {
         run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, end);
         end_now(clock);
-        take_no_time(clock);
+        static_count_empty_increment(clock);
         break;
       }
       fail(s, outcome, settled, error);

@@ -28,9 +28,9 @@ run plate-with-hole/plate --set "variables.dx=10 mm"
 near "widening of the hole" "$(value plate/side 3)" "$(exact "1000 * 0.1 / 210e6 * 0.65 * (1.05 * (1 + (2.7 / 1.3 - 1) / 2) + (2 + 2.7 / 1.3) / 1.05 - 1.05 ^ -3)")" 0.025
 near "stress above the hole" "$(value plate/edge 9)" "$(exact "1000 * (1 + 0.5 / 1.05 ^ 2 + 1.5 / 1.05 ^ 4)")" 0.08
 
-# Kirsch and Lamé by ordinary families at two spacings. Beside the hole the stress is the mean over half a family, which
-# is less than that of the first particle. The stress of force states alone would be 12 % too large there at 5 mm, and
-# 20 % at the wall of the ring.
+# Kirsch and Lamé by ordinary families at two spacings. The stress of the first particle beside the hole is a mean over
+# half a family, and less than Kirsch's stress there. The stress of force states alone would be 12 % too large there at
+# 5 mm, and 20 % too large at the wall of the ring.
 for dx in 10 5; do
   sed 's/formulation: correspondence, space: plane stress, strain: small/formulation: ordinary, space: plane stress/' \
     "$source/examples/plate-with-hole/plate.yaml" > hole.yaml

@@ -132,7 +132,7 @@ grep -q '^under 120 kN 3 of 3 runs fail' out && grep -q '^under 90 kN 0 of 3 run
 equal "samples: status" $? 0
 grep -q '^ *100 kN ' out && grep -q '^ *150 kN ' out || fail "samples: $(cat out errors)"
 # Ground on a slope without end slides where strengths are divided by c / (gamma H sin b) + tan(phi) / tan(b) = 0.447 + 0.8 = 1.247.
-# Strains of Green and Lagrange of 5 % lessen forces as much before it slides.
+# With Green-Lagrange strains of 5 % forces before the slide are 5 % smaller.
 cat > slope.yaml <<'Y'
 units: {length: m, force: kN, time: s}
 variables: {factor: 1, g: 10, lean: "${atan(0.5)}"}
@@ -147,8 +147,8 @@ Y
 "$breccia" failure slope.yaml --load variables.factor=1:2 --within 0.02 > out 2> errors
 equal "a slope without end: status" $? 0
 sed -n 's/^factor of safety: between \([0-9.]*\) and .*/\1/p' out | awk '{good = $1 > 1.14 && $1 < 1.31} END {exit !good}' || fail "a slope without end: $(cat out errors)"
-# Clay on half of its height slides at 1.50 by slip circles. With constant influence control of zero-energy modes holds it
-# beyond; a run tells from which factor on.
+# A slope of clay, on ground of half its height, slides at 1.50 by slip circles. With constant influence control of
+# zero-energy modes holds the slope beyond that factor, and a run tells from which factor on.
 if [ -z "${BRECCIA_SANITIZED:-}" ]; then
   cat > clay.yaml <<'Y'
 units: {length: m, force: kN, time: s}

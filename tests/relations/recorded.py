@@ -33,8 +33,8 @@ import recorded_decks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 RECORD = os.path.join(HERE, "recorded.txt")
-# Numbers that --record tries, and the number of cases that are recorded of those that run: decks, wide decks, tests of
-# the laboratory, pictures, other verbs (recorded_decks.py).
+# Numbers of the cases that --record tries, and the largest number of recorded cases that run, by kind: decks, wide
+# decks, tests of material points, pictures, other verbs (recorded_decks.py). Pictures and verbs are all recorded.
 NUMBERS = {
     range(900): 300,
     range(recorded_decks.WIDE, 1066): 50,
@@ -42,7 +42,7 @@ NUMBERS = {
     range(recorded_decks.PICTURE, recorded_decks.PICTURE + len(recorded_decks.PICTURES)): 9,
     range(recorded_decks.VERB, recorded_decks.VERB + len(recorded_decks.VERBS)): 99,
 }
-# Cases that other compilers lead to other results.
+# Cases left out because their results depend on the compiler.
 UNSTABLE = (1001, 1020, 1022, 1023, 1043, 1059, 2078, 2080)
 DIGITS, TOLERANCE = 7, 2e-6
 # Decks in which round-off decides, as whether an increment comes to rest: other versions of libraries or compilers lead
@@ -129,13 +129,13 @@ def figures_of(groups):
 
 
 def run_test(options, number):
-    """Runs a test of the laboratory; its figures are sums over the columns of strains, stresses and tangents."""
+    """Runs a test of a material point. Figures are sums over the columns of strains, stresses and tangents."""
     path = os.path.join(options.work, f"{number}.csv")
     words = recorded_decks.Laboratory(number).words + ["--output", path]
     done = subprocess.run([options.command] + words, capture_output=True, text=True, timeout=120)
     text, names, figures = done.stderr.replace(path, "FILE"), [], []
     if done.returncode == 0:
-        names, figures = figures_of({f"{key}": g for key, g in outputs.groups_of_table(path, str(number)).items()})
+        names, figures = figures_of(outputs.groups_of_table(path, str(number)))
     return Outcome(done.returncode, words_of(text)[0], figures, names)
 
 
@@ -144,8 +144,8 @@ PATH = re.compile(r'<path style="([^"]*)" d="([^"]*)"')
 
 
 def run_pictures(options, folder, number):
-    """Draws the results of a deck; figures are sums over the colours and over the coordinates of what is drawn but
-    letters, for each picture."""
+    """Runs a deck and draws its results. Figures are sums over the colours and over the coordinates of the drawn lines,
+    without letters, for each picture."""
     pictures = recorded_decks.Pictures(number)
     write_files(folder, json.dumps(pictures.deck.text))
     calls = [["run", "deck.yaml", "--threads", "1", "--output", "out"]]
@@ -163,14 +163,17 @@ def run_pictures(options, folder, number):
 
 
 def groups_of_picture(paths):
+    """Returns the groups of colours and of lines of a picture.
+
+    paths: pairs of style and points of the paths of an SVG file."""
     colours, lines = ([[float(n) for n in re.findall(outputs.NUMBER, path[k])] for path in paths] for k in (0, 1))
-    for line in lines[1:]:  # from the first point that is drawn: margins follow the font
+    for line in lines[1:]:  # relative to the first drawn point, because the width of margins depends on the font
         line[::2], line[1::2] = [x - lines[0][0] for x in line[::2]], [y - lines[0][1] for y in line[1::2]]
     return outputs.Group("number", "", colours, "colours"), outputs.Group("number", "", lines[1:], "lines")
 
 
 def run_verb(options, folder, number):
-    """Calls another verb; figures are those of the tables that it writes, and of the words."""
+    """Calls another verb. Figures are those of the tables that the call writes, and the numbers that it prints."""
     deck, words = recorded_decks.VERBS[number - recorded_decks.VERB]
     write_files(folder, deck_of(deck))
     os.makedirs(os.path.join(folder, "out"), exist_ok=True)

@@ -1,4 +1,5 @@
-"""Small decks that combine all keys of the deck language at random.
+"""Small decks that combine all keys of the deck language at random, and calls of the verbs material, plot, spectrum,
+calibrate and modes.
 
 A deck is a dictionary of its keys. Each choice is a hash of the number of the deck and the name of the choice, so that
 a new key or level changes only the decks that take it."""
@@ -878,9 +879,10 @@ SOLVERS = {
     "static stages": static_stages,
 }
 
+
 class WideDeck(Deck):
-    """A deck of a body that no other deck has: particles from a file, a file beside a lattice, blocks of unlike
-    spacings, three materials, more layers than a family is deep; with odd sizes, thicknesses and densities."""
+    """Deck of a kind of body that Deck has not: particles from a file, a file beside a lattice, blocks of different
+    spacings, three materials, more layers than a family is deep. Sizes, thicknesses and densities are not round."""
 
     def materials(self):
         super().materials()
@@ -954,7 +956,7 @@ class WideDeck(Deck):
 
 
 class Laboratory:
-    """A test of one material point: arguments of `breccia material`."""
+    """Test of one material point: arguments of `breccia material`."""
 
     SOLID = ("uniaxial", "triaxial", "undrained triaxial", "oedometer", "biaxial", "isotropic", "simple shear",
              "undrained shear")  # fmt: skip
@@ -994,7 +996,7 @@ class Laboratory:
 
 
 class Pictures:
-    """Pictures of the results of a deck: arguments of `breccia plot` for each."""
+    """Five pictures of the results of a deck: arguments of `breccia plot` for each."""
 
     FIELDS = ("displacement", "velocity", "stress", "strain", "damage", "internal force")
     PARTS = {"stress": ("xx", "yy", "xy"), "strain": ("yy", "xy"), "damage": ("",)}
@@ -1023,7 +1025,7 @@ class Pictures:
 RECORD = "time (ms),late (ms),a,b\n" + "".join(
     f"{0.5 * n:g},{0.7 * n + 1:g},{n % 3},{0.2 * n + 0.3 * (n % 4):.10g}\n" for n in range(12))  # fmt: skip
 
-# Particles that stand in no lattice, with volumes of their own; the columns have units that no deck has.
+# Files of particles off the points of a lattice, with different volumes. Their columns have units that no deck has.
 PLANE = "x (mm),y (mm),volume (cm3)\n" + "".join(
     f"{100 * i + 150 + 7 * ((i * j) % 3)},{100 * j + 250 + 4 * ((i + 2 * j) % 5)},{2700 + 31 * ((2 * i + j) % 4)}\n"
     for i in range(9) for j in range(7))  # fmt: skip
@@ -1031,16 +1033,17 @@ SPACE = "x (mm),y (mm),z (mm),volume (cm3)\n" + "".join(
     f"{100 * i + 150 + 7 * ((i * j) % 3)},{100 * j + 250 + 4 * ((i + k) % 5)},{100 * k - 50 + 3 * ((i + j) % 4)},"
     f"{1000 + 13 * ((2 * i + j + k) % 4)}\n" for i in range(6) for j in range(5) for k in range(5))  # fmt: skip
 FILES = {"record.csv": RECORD, "plane.csv": PLANE, "space.csv": SPACE}
-# First numbers of wide decks, of tests of the laboratory, of pictures, and of other verbs.
+# First numbers of wide decks, of tests of material points, of pictures and of calls of other verbs.
 WIDE, LABORATORY, PICTURE, VERB = 1000, 2000, 3000, 4000
-PICTURES = (1016, 1018, 1024, 1010, 1044, 1049)  # decks that run in a moment
+PICTURES = (1016, 1018, 1024, 1010, 1044, 1049)  # decks whose results are drawn: they run fast
 
 
 def deck(number):
     return (WideDeck if number >= WIDE else Deck)(number)
 
 
-# Calls of other verbs, each list in a folder of its own: the number of its deck, and the calls, which write to `out`.
+# Calls of other verbs: number of the deck of the call, and its arguments. Each call has a folder of its own; its
+# results go to `out`.
 SPECTRUM = "spectrum record.csv --output out"
 VERBS = (
     (0, f"{SPECTRUM} --column b --unit g --count 9 --periods 0.0007:0.02 --damping 0.13"),

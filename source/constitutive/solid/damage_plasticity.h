@@ -35,7 +35,7 @@ enum {
 
 /** Sets the lengths by crack normal over which points spread the fracture energy. */
 void damage_plasticity_take_lengths(void *constants, const NormalLengths *lengths);
-/** Returns true if a history has plastic strain in tension. */
+/** Returns true if a history [history_values] has plastic strain in tension. */
 bool damage_plasticity_is_damaged(const void *constants, const double *history);
 /** Returns the length [length] over which a point can spread the fracture energy at the most: over a longer one its
  *  curve in tension would snap back. Points with a longer length take more than the fracture energy. */

@@ -28,7 +28,7 @@ enum { LINK_TENSILE = 0, LINK_COMPRESSIVE, LINK_CLOSING_OFFSET, LINK_LENGTH, LIN
 
 /** Sets the lengths by crack normal over which points spread the fracture energy. */
 void link_damage_take_lengths(void *constants, const NormalLengths *lengths);
-/** Returns true if a history has tensile damage. */
+/** Returns true if a history [history_values] has tensile damage. */
 bool link_damage_is_damaged(const void *constants, const double *history);
 
 LANES_CHOICE(SolidUpdate, link_damage_update)

@@ -18,7 +18,7 @@ typedef struct Mazars {
 
 /** Sets the lengths by crack normal over which points spread the fracture energy. */
 void mazars_take_lengths(void *constants, const NormalLengths *lengths);
-/** Returns true if the largest equivalent strain of a history is beyond the damage threshold. */
+/** Returns true if the largest equivalent strain of a history [history_values] exceeds the damage threshold. */
 bool mazars_is_damaged(const void *constants, const double *history);
 
 LANES_CHOICE(SolidUpdate, mazars_update)

@@ -1,4 +1,4 @@
-/* A body of three materials is the same body in whatever order its blocks stand in the deck. */
+/* Results of a body of three materials do not depend on the order of its blocks in the deck. */
 #include "support.h"
 
 static const char *const blocks[] = {
@@ -24,7 +24,8 @@ static const struct {
     {"micropolar", "model: elastic, Poisson ratio: 0.2",
      "failure: {criterion: critical bond energy, fracture energy: 0.02}\n"},
 };
-enum { SOFTENING = 3, BREAKING = 5 }; /* before the number of kinds that soften; kinds from here on break */
+/* Laws of the kinds before SOFTENING soften; bonds of the kinds from BREAKING on break. */
+enum { SOFTENING = 3, BREAKING = 5 };
 
 static breccia_model *body(int kind, const int order[3])
 {
@@ -42,7 +43,7 @@ static breccia_model *body(int kind, const int order[3])
       kinds[kind].failure);
 }
 
-/** The particle of another model at the position of a particle. */
+/** Returns the place in `q` of the particle that is nearest to particle `i` of `p`. */
 static int32_t twin_of(const Particles *p, int32_t i, const Particles *q)
 {
   const double x[3] = {p->position[0][i], p->position[1][i], p->position[2][i]};
@@ -59,7 +60,7 @@ static void the_order_of_blocks_changes_nothing(void **state)
     const Energy e = solver_energy(&first->solver);
     if (k < SOFTENING) assert_true(e.dissipated > 1e-3);
     if (k >= BREAKING) assert_true(first->domain.broken_count > 50 && e.fracture > 1e-3);
-    /* Hybrid bodies that break by their bond stress differ by 1e-9; why is not known. */
+    /* Displacements of hybrid bodies whose bonds break by their stress differ by 1e-9; the cause is not known. */
     const double near = k < BREAKING ? 1e-12 : 1e-8;
     for (int o = 1; o < 3; ++o) {
       breccia_model *other = body(k, orders[o]);

@@ -1,7 +1,8 @@
-/* Contact in one dimension: bars that meet end to end, beside closed forms of waves and of layers in series. */
+/* Contact in one dimension: bars that meet end to end, against closed forms of waves and of layers in series. */
 #include "support.h"
 
-/* Two bars of unlike spacing and stiffness along x, farther apart than the horizon. */
+/* Two bars along x, farther apart than the horizon. Modulus, density, spacing, number of particles and first particle
+ * of the second bar are arguments. */
 #define BARS                                                                                                           \
   "units: {length: m, force: kN, time: s}\n"                                                                           \
   "materials:\n  m: {model: elastic-1d, Young modulus: 8e4, density: 2}\n"                                             \
@@ -12,7 +13,8 @@
   "[%g, 0]}}}\n"                                                                                                       \
   "peridynamics: {formulation: bond-based, space: 1-D, horizon: 0.2015}\n"
 
-typedef struct Bar { /* of one block */
+/** Sums over the particles of one block: mean velocity, internal force, lowest and highest x. */
+typedef struct Bar {
   double mass, velocity, force, low, high;
 } Bar;
 
@@ -34,18 +36,18 @@ static Bar bar_of(const breccia_model *m, int block)
   return bar;
 }
 
-/** A bar meets one at rest with twice its impedance and the same length and wave speed. By d'Alembert's solution they
- *  part after 2 L / c: the first flies back with a third of its velocity v, the other on with 2 v / 3. */
+/** A bar with velocity v meets a bar at rest of twice its impedance, the same length L and the same wave speed c. By
+ *  d'Alembert's solution the bars part after 2 L / c: the first flies back with v / 3, the second on with 2 v / 3. */
 static void bars_that_meet_part_as_their_impedances_say(void **state)
 {
   (void)state;
-  /* E = 160, density 4: twice the impedance, the same speed of waves, 200 m/s. */
+  /* E = 160 MPa and a density of 4 t/m3: twice the impedance, the same wave speed of 200 m/s. */
   breccia_model *m = model_of(BARS "contact: {}\nloads: [{on: {block: a}, initial velocity: {translation: [3, 0]}}]\n"
                                    "solve: {explicit: {end time: 0.16, safety: 0.5}}\n",
                               1.6e5, 4.0, 0.1, 40, 0.35);
   const double v = 3, momentum = 3 * bar_of(m, 0).mass, met = 0.3 / v, lasts = 2 * 4.0 / 200;
   while (breccia_model_time(m) < met + 0.5 * lasts) step_surely(m, 1);
-  /* While they press each other the face between them moves with v / 3, and the force is rho c A 2 v / 3. */
+  /* During contact the face between the bars moves with v / 3, and the force is rho c A 2 v / 3. */
   const double force = 2 * 200 * 0.013 * 2 * v / 3;
   assert_near(bar_of(m, 1).force, force, 0.1 * force);
   assert_near(bar_of(m, 0).force, -force, 0.1 * force);
@@ -59,8 +61,8 @@ static void bars_that_meet_part_as_their_impedances_say(void **state)
   breccia_model_destroy(&m);
 }
 
-/** Between bars that are pressed together stands a layer of the mean spacing, with the harmonic mean of both moduli
- *  times the stiffness of the deck. The force is also that of both bars in series. */
+/** Contact acts as a layer as thick as the mean spacing, with the harmonic mean of both moduli times the stiffness of
+ *  the deck. The force is also that of the layer and both bars in series. */
 static void bars_that_are_pressed_together_have_a_layer_between_them(void **state)
 {
   (void)state;
@@ -83,7 +85,7 @@ static void bars_that_are_pressed_together_have_a_layer_between_them(void **stat
     assert_near(-through, force, 1e-6 * force);
     /* Between the particles of their ends the bars are 3.9 and 1.92 long; ends with few bonds are a little softer. */
     const double shorter = force * (3.9 / ea + 1.92 / (3e4 * 0.013));
-    const double pushed = 0.37 - (0.34 + 0.05 - 0.09); /* of the last particle beyond first touch */
+    const double pushed = 0.37 - (0.34 + 0.05 - 0.09); /* displacement of the last particle after first contact */
     assert_near(shorter, pushed - gap, 0.05 * pushed);
     breccia_model_destroy(&m);
   }

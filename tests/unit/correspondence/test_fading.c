@@ -366,9 +366,10 @@ static void vertical_cuts_fail_at_their_limit_load(void **state)
   assert_false(cut_stands(1.09));
 }
 
-/** A slope of clay of 45 degrees, six spacings high, on half of that: 1.50 by slip circles. Its pressure stores much more
- *  energy than its shear, and does not fade as it slides: control whose stiffness fell with the energy of both held the
- *  slope up to a factor of 4. With constant influence control still resists slip lines, so that the factor is too high. */
+/** A slope of clay of 45 degrees, six spacings high, on ground of half that depth, has a factor of safety of 1.50 by
+ *  slip circles. Pressure stores much more energy than shear, and its energy stays as the ground slides. Control that
+ *  fades by the secant stiffness of both held the slope up to a factor of 4. With constant influence control still
+ *  resists slip lines, so that the factor is too high. */
 static void confined_slopes_slide(void **state)
 {
   (void)state;

@@ -20,7 +20,7 @@ static void take(breccia_model *m)
 static const struct Law {
   const char *law, *control;
   double softening; /* energy per volume with which it begins to soften; 0: it yields */
-  double pressed;   /* strain alike in all directions, in addition to others */
+  double pressed;   /* isotropic strain in addition to the strains of the test [-] */
 } laws[] = {
     {"model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, tensile strength: 3000",
      "silling: 0.1", 3000.0 * 3000 / (2 * 30e6), 0},
@@ -45,8 +45,8 @@ static breccia_model *block_of(const struct Law *law)
                   law->law, law->control);
 }
 
-/** What of its stiffness a place has left in its last forces: s : e / e : C0 : e, at most 1; of laws that yield without
- *  softening that of the deviators, if it is less. */
+/** Returns the secant stiffness of a place in its last forces over the first one, s : e / e : C0 : e, at most 1. If the
+ *  law yields without softening, returns that of the deviators if it is less. */
 static double left_of(const breccia_model *m, int32_t place, bool yields)
 {
   const Points *points = &m->domain.regions[0].points;

@@ -1,4 +1,4 @@
-/* Lengths by crack normals in increments that lead from elastic points into softening (solver/newton.h,
+/* Lengths by crack normal in increments in which elastic points begin to soften (solver/newton.h,
  * constitutive/normal_lengths.h). */
 #include "support.h"
 
@@ -17,10 +17,11 @@ static double stress_in_the_middle(const Domain *d)
   return (stress[0] + stress[1]) / 2 + stress[3];
 }
 
-/** Returns the stress along the diagonal in the middle of a block of hybrid bonds that is strained along its diagonal, in the middle
- *  to about seven times the elastic limit. All particles but one in the middle follow prescribed displacements. A second
- *  block, which stays elastic, does most of the work, so that increments in which points soften are not cut.
- *  @param[in] solve  the section 'solve' */
+/** Returns the stress along the diagonal in the middle of a block of hybrid bonds. The block is strained along its
+ *  diagonal, in the middle to about seven times the elastic limit. All particles except those in the middle have
+ *  prescribed displacements. A second block, which stays elastic, takes most of the work of the loads, so that
+ *  increments in which points soften are not cut.
+ *  @param[in] solve  text of the section 'solve' */
 static double stress_along_diagonal(const char *law, double horizon, const char *solve)
 {
   const double stretch = 7e-4;

@@ -107,8 +107,8 @@ static void a_free_body_takes_it_without_stress(void **state)
   }
 }
 
-/** So does a body of two materials, of one formulation or of two; Poisson's ratios are unlike where they have no say in
- *  the free strain. */
+/** A free body of two materials, in one formulation or in two, takes an initial strain without stress. In plane strain,
+ *  where the strain in the plane depends on Poisson's ratio, both materials have the same ratio. */
 static void a_free_body_of_two_materials_takes_it_without_stress(void **state)
 {
   (void)state;

@@ -258,7 +258,7 @@ static void what_only_presses_is_told(void **state)
   breccia_model_destroy(&m);
 }
 
-/** A jack that moves away from the body is warned of; one that is held still, or presses, is not. */
+/** A jack that moves away from the body gives a warning; a jack that is held still or presses gives none. */
 static void a_jack_that_moves_away_is_warned_of(void **state)
 {
   (void)state;

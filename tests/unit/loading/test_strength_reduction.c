@@ -162,7 +162,8 @@ static void slopes_without_end_slide_at_their_closed_form(void **state)
   }
 }
 
-/** Where another load grows, too, or a stage follows, the end of equilibrium is no factor of safety, and a failure. */
+/** Loss of equilibrium is a factor of safety if a strength reduction alone has grown in the last stage. It is a failure
+ *  if another load grows, too, or if another stage follows. */
 static void a_factor_is_found_by_a_reduction_alone(void **state)
 {
   (void)state;

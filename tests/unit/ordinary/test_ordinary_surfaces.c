@@ -36,7 +36,7 @@ static double strain_of(const breccia_model *m, const double along[2], double le
   return (far - near) / (to - from);
 }
 
-/** Mean stress along x of particles in the middle third of a length. */
+/** Returns the mean stress along x of the particles in the middle third of a length. */
 static double stress_of(const breccia_model *m, double length)
 {
   const Particles *p = m->domain.particles;
@@ -295,7 +295,7 @@ static void shifted_rows_from_files_have_the_energy_of_hooke(void **state)
   }
 }
 
-/** Sets R (1 + h g) with a rotation R about z. */
+/** Computes the deformation gradient R (1 + h g) with a rotation R by `turn` (rad) about z. */
 static void turned_strain(double h, const double g[9], double turn, double f[9])
 {
   const double r[9] = {cos(turn), -sin(turn), 0, sin(turn), cos(turn), 0, 0, 0, 1};
@@ -322,9 +322,9 @@ static void turned_stress(const char *space, double h, const double g[9], double
   stress[ZX] = c * t[ZX] - s * t[YZ];
 }
 
-/** Families at surfaces keep some anisotropy for bending, and some that no factors remove. The stress of their force
- *  states is up to 1.16 of Hooke's at a flat face in tension, 0.91 below it, and 1.4 at edges. Stresses of particles
- *  are Hooke's in a uniform strain, on flat and on stepped faces, at edges and corners, and turn with the body. */
+/** In a uniform strain the stress of a particle is Hooke's, on flat and on stepped faces, at edges and corners, and it
+ *  turns with the body. The stress of the force states alone is not, because families at surfaces are anisotropic
+ *  (formulation/ordinary_stress.c): up to 1.16 of Hooke's at a flat face in tension, 0.91 below, and 1.4 at edges. */
 static void stresses_at_surfaces_are_hookes(void **state)
 {
   (void)state;

@@ -1,5 +1,5 @@
-/* Bodies whose parts have unlike densities, volumes and stiffnesses, under loads that move all particles alike. A load
- * that forgets a density or a volume strains them. */
+/* Bodies of two parts with different densities, particle volumes and stiffnesses, under loads that move all particles
+ * alike. A load without the right density or volume strains such a body. */
 #include "support.h"
 
 /* Two blocks of one body. */
@@ -28,7 +28,7 @@ static breccia_model *parts(int kind, const char *rest)
   return model_of(PARTS "%s", kinds[kind].law, kinds[kind].law, kinds[kind].spacing, kinds[kind].formulation, rest);
 }
 
-/** Fails unless all particles have moved by u. */
+/** Fails unless the displacement of every particle is (x, y) [length]. */
 static void assert_moved(const breccia_model *m, double x, double y, double tolerance)
 {
   const Particles *p = m->domain.particles;
@@ -38,7 +38,7 @@ static void assert_moved(const breccia_model *m, double x, double y, double tole
   }
 }
 
-/** Under gravity and a shaken base a free body falls as one; the external work is its kinetic energy. */
+/** Under gravity and base acceleration a free body moves without strain; energies are those of a rigid body. */
 static void unlike_parts_fall_as_one(void **state)
 {
   (void)state;
@@ -69,7 +69,7 @@ static void unlike_parts_fall_as_one(void **state)
   }
 }
 
-/** Damping of the mass slows them alike, v = v0 exp(-c t), and takes what they lose. */
+/** Mass-proportional damping slows all particles alike, v = v0 exp(-c t), and dissipates the kinetic energy lost. */
 static void unlike_parts_are_damped_as_one(void **state)
 {
   (void)state;
@@ -91,8 +91,8 @@ static void unlike_parts_are_damped_as_one(void **state)
   }
 }
 
-/** A spring that holds all particles shares its stiffness by volume, as a body force shares its force: at rest all have
- *  moved by the force over the stiffness. The spring of a second stage begins without force. */
+/** A spring on all particles distributes its stiffness by volume, as a body force does its force: in equilibrium every
+ *  displacement is force over stiffness. A spring that a second stage adds begins without force. */
 static void unlike_parts_hang_from_springs_as_one(void **state)
 {
   (void)state;
@@ -116,7 +116,8 @@ static void unlike_parts_hang_from_springs_as_one(void **state)
   }
 }
 
-/** Forces that are shared by volume strain parts of unlike densities, but the momentum is that of the whole force. */
+/** A force that is distributed by volume strains parts of different densities, but the total momentum is the impulse of
+ *  the force. */
 static void forces_in_all_move_the_common_centre(void **state)
 {
   (void)state;

@@ -50,11 +50,12 @@ static const struct Softening {
 };
 enum { BODIES = sizeof bodies / sizeof *bodies };
 
-/** Plate of COLUMNS by ROWS particles, notched on one side over a quarter of its width. */
+/** Size of the plate and of its grips in particles, and sizes of arrays. The plate is notched on one side over a quarter
+ * of its width. */
 enum { COLUMNS = 7, ROWS = 9, GRIP = 2, MOST_STEPS = 400, MOST_ROWS = 20 };
 static const double spacing = 0.02;
 
-/** Unit of time (s). */
+/** Returns the unit of time of a pose (s). */
 static double pose_second(const struct Pose *pose)
 {
   return strstr(pose->units, "min") ? 60 : strstr(pose->units, "ms") ? 1e-3 : 1;
@@ -125,10 +126,11 @@ static double pull_of(const breccia_model *m, const struct Pose *pose)
   return hypot(sum.force[0], sum.force[1]) * pose->force;
 }
 
-/** Forces that move the grip (N). */
+/** Forces that move the grip. */
 typedef struct Answer {
-  double peak, last, at[MOST_STEPS]; /* at: after each step */
-  double time[MOST_STEPS];           /* of the end of each step, over that of the stage */
+  double peak, last;       /* (N) */
+  double at[MOST_STEPS];   /* [steps] force after each step (N) */
+  double time[MOST_STEPS]; /* [steps] end of each step (s) */
   int steps;
 } Answer;
 
@@ -148,8 +150,8 @@ static Answer answer_of(const struct Softening *body, const struct Pose *pose)
   return answer;
 }
 
-/** Returns the largest difference of two answers over the peak, at all times at which both have a step: where the number
- * of iterations is that from which on increments get shorter, round-off decides. */
+/** Returns the largest difference of two answers over the peak, at all times at which both have a step. The times of
+ * steps may differ: round-off can decide whether an increment takes so many iterations that the next is shortened. */
 static double difference_of(const Answer *a, const Answer *b)
 {
   double most = fabs(a->peak - b->peak);
@@ -164,8 +166,8 @@ static double difference_of(const Answer *a, const Answer *b)
   return most / a->peak;
 }
 
-/** Poses each body in the first way, turned, and in all ways at once. Bodies of bonds, whose increments jump, are posed
- * in one of the other ways besides. */
+/** Compares the first pose of each body with the turned one and with all changes at once. Bodies of softening bonds,
+ * which jump, are compared in one more pose. */
 static void what_a_body_bears_does_not_depend_on_how_it_is_posed(void **state)
 {
   (void)state;
