@@ -1,5 +1,6 @@
 #include "solver/preconditioner.h"
 
+#include "base/random.h"
 #include "base/team.h"
 #include "solver/coarse_frame.h"
 #include <math.h>
@@ -15,7 +16,9 @@ int preconditioner_create(Preconditioner *m, const Domain *d, bool any_pose, Err
   if (any_pose) coarse_frame_find(p, d->body.dimensions, m->centre, axes);
   m->diagonal = places_array(p->places, "preconditioner", error);
   if (m->diagonal && p->rotary) m->turning = places_array(p->places, "preconditioner", error);
-  m->grid = m->diagonal && (m->turning || !p->rotary) ? coarse_grid_create(d, any_pose && !p->rotary, error) : NULL;
+  if (!m->diagonal || (p->rotary && !m->turning)) return BRECCIA_FAILURE;
+  if (any_pose && p->rotary) return BRECCIA_OK;
+  m->grid = coarse_grid_create(d, any_pose, error);
   return m->grid ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -144,6 +147,15 @@ static double probe_free_share(const Probing *p, int64_t place)
   return whole > 0 ? fmax(least, left / whole) : 1;
 }
 
+/** A factor near 1 that differs from particle to particle, by their numbers: a body that is its own mirror image would
+ *  come to rest where two like cracks are both half open, from which it moves away at the slightest difference. */
+static double probe_uneven(int32_t number)
+{
+  const double size = 1e-4;
+  uint64_t state = (uint64_t)number;
+  return 1 + size * (random_uniform(&state) - 0.5);
+}
+
 /** Estimates the diagonal of K as the mean of the products v_i (K v)_i over pseudo-random vectors v (Bekas, Kokiopoulou
  *  and Saad 2007, Appl. Numer. Math. 57, 1214). The terms of other entries of K average out, and are small where
  *  families are large. The estimate is bounded from below by a share of the value expected from the family of a
@@ -179,6 +191,7 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MO
   for (int64_t i = 0; i < places; ++i) {
     const bool lost = d->particles->number[i] < 0 || (m->diagonal[i] == 0 && !family_count(&d->family, (int32_t)i));
     m->diagonal[i] = lost ? INFINITY : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
+    if (m->any_pose && !lost) m->diagonal[i] *= probe_uneven(d->particles->number[i]);
   }
   if (m->turning) finish_turning(m, s);
 }
@@ -187,6 +200,7 @@ int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[M
                            Error *error)
 {
   find_diagonal(m, s, v, kv);
+  if (!m->grid) return BRECCIA_OK;
   return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, m->turning, !s->elastic, s->stiffness_share,
                              s->mass_factor, error);
 }
@@ -222,6 +236,6 @@ void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double
                           double *const v[MOTIONS])
 {
   team_each(s->domain->batch_count, divide_batch, &(Scaling){m, s->domain, f, v});
-  if (!m->any_pose || !m->turning) coarse_grid_correct(m->grid, f, v);
+  if (m->grid) coarse_grid_correct(m->grid, f, v);
   unknowns_clear_rest(&s->unknowns, v);
 }

@@ -11,10 +11,10 @@
 #include "solver/linear_solver.h"
 
 typedef struct Preconditioner {
-  double *diagonal; /* [places] mean over the axes; infinite: nothing holds the particle, and it stays where it is */
-  double *turning;  /* [places] the same of rotations; NULL without them */
-  double centre[3]; /* centre of volume of the body [length]; only with any_pose */
-  CoarseGrid *grid;
+  double *diagonal;  /* [places] mean over the axes; infinite: nothing holds the particle, and it stays where it is */
+  double *turning;   /* [places] the same of rotations; NULL without them */
+  double centre[3];  /* centre of volume of the body [length]; only with any_pose */
+  CoarseGrid *grid;  /* NULL: bodies with rotations, for any pose */
   bool any_pose;     /* as preconditioner_create was given */
   bool is_symmetric; /* K, as far as two products tell */
 } Preconditioner;

@@ -270,8 +270,9 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
 }
 
 /** Returns true if the stage determines a factor of safety: the stage is the last one, a strength reduction has grown
- *  since its beginning, and no other load has changed. The loss of equilibrium is then the result, not a failure. */
-static bool static_finds_reduction(const Solver *run)
+ *  since its beginning, and no other load has changed. The loss of equilibrium is then the result, not a failure.
+ *  @param[in] end  time of the increment that found no equilibrium */
+static bool static_finds_reduction(const Solver *run, double end)
 {
   const Clock *clock = &run->clock;
   const double begin = run->records[clock->stage].begin;
@@ -280,7 +281,9 @@ static bool static_finds_reduction(const Solver *run)
     const Load *load = &run->loading->loads[k];
     if (load->type == &strength_reduction_load || !load_acts(run->loading, load) || !load_magnitude(load->spec))
       continue;
-    if (load_factor(load, clock->time) != load_factor(load, begin)) return false;
+    if (load_factor(load, clock->time) != load_factor(load, begin) ||
+        load_factor(load, end) != load_factor(load, begin))
+      return false;
   }
   return loading_strength_reduction(run->loading, clock->time) > loading_strength_reduction(run->loading, begin);
 }
@@ -481,7 +484,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
         static_count_empty_increment(clock);
         break;
       }
-      if (static_finds_reduction(run)) {
+      if (static_finds_reduction(run, end)) {
         run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, end);
         end_now(clock);
         static_count_empty_increment(clock);

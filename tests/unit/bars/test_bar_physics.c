@@ -161,7 +161,7 @@ static void cracks_of_a_tie_stand_apart_by_bond(void **state)
       "loads:\n"
       "  - {name: left, on: {face: x-, layers: 3}, displacement: [0, 0]}\n"
       "  - {name: right, on: {face: x+, layers: 3}, displacement: [1.5 mm, 0], history: {ramp to: 1}}\n"
-      "solve: {static: {increments: 30, method: relaxation, residual: 1e-5}}\npictures: []\n");
+      "solve: {static: {increments: 40, method: relaxation, residual: 1e-5}}\npictures: []\n");
   const double concrete = 0.12 * 0.12, steel = acos(-1) / 4 * 0.016 * 0.016, rho = steel / concrete, ratio = 200.0 / 30;
   const double cracks_at = 3e3 * (concrete + ratio * steel), lost = 3e3 / rho * (1 + ratio * rho),
                apart = 0.016 / (4 * 1.8 * rho);
