@@ -279,7 +279,7 @@ static bool static_finds_reduction(const Solver *run, double end)
   if (clock->stage + 1 < clock->stages || ((const Static *)run->own)->spec->control) return false;
   for (int k = 0; k < run->loading->count; ++k) {
     const Load *load = &run->loading->loads[k];
-    if (load->type == &strength_reduction_load || !load_acts(run->loading, load) || !load_magnitude(load->spec))
+    if (load->type == &strength_reduction_load || !load_acts(run->loading, load) || load_magnitude(load->spec) == 0)
       continue;
     if (load_factor(load, clock->time) != load_factor(load, begin) ||
         load_factor(load, end) != load_factor(load, begin))
