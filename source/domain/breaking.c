@@ -121,15 +121,14 @@ static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane,
 /** Returns E_c / E, the energy of a bond at its limit over its present energy. In equilibrium E exceeds E_c where an
  *  increment or a running crack has carried the bond beyond its limit; the difference is added to the shed energy.
  *  Returns 1 in motion. */
-static double find_share(Domain *d, int64_t slice, int64_t slot, int lane, const Moment *moment,
-                         const BrokenBond *broken)
+static double find_share(Domain *d, const BreakingBond *b, const Moment *moment)
 {
   if (!moment->most || !d->failure.criterion) return 1;
-  const Bond bond = family_bond(&d->family, slice, slot, lane);
-  const double ratio = broken->limit / broken->value;
-  const double share = !(broken->value > broken->limit) ? 1 : d->failure.criterion->power == 2 ? ratio * ratio : ratio;
+  const Bond bond = family_bond(&d->family, b->slice, b->slot, b->lane);
+  const double ratio = b->limit / b->value;
+  const double share = !(b->value > b->limit) ? 1 : d->failure.criterion->power == 2 ? ratio * ratio : ratio;
   const double weight = d->failure.influence->value(fmin(1, bond.length / d->family.horizon), bond.length) *
-                        bond.length * bond.length * d->particles->volume[slice * SLICE + lane] *
+                        bond.length * bond.length * d->particles->volume[b->slice * SLICE + b->lane] *
                         d->particles->volume[bond.neighbour];
   d->energy_at_limit += weight;
   d->energy_held += weight / share;
@@ -143,49 +142,65 @@ static void book(Domain *d, double energy, double share)
   d->shed_energy += (1 - share) * energy;
 }
 
-/** Moves the energy at the limit of a stranded bond from the shed energy of the step to the fracture energy. A stranded
- *  bond lost its members to other broken bonds; its points lost the energy with these members. */
-static void book_stranded(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, double shed_before)
+/** Returns the mean of the shares of the bonds that break in the step under way. */
+static double mean_share(const Domain *d)
 {
-  const Criterion *criterion = d->failure.criterion;
-  if (!criterion || !criterion->energy_at_limit) return;
-  const double inside = ((d->counted[slice * SLICE + lane] > 0) + (d->counted[neighbour] > 0)) / 2.0;
-  const double limit = criterion->energy_at_limit(&d->failure, &d->family, slice, slot, lane) / (1 + d->failure.beyond);
-  const double energy = fmin(inside * limit, fmax(0, d->shed_energy - shed_before));
-  d->fracture_energy += energy;
-  d->shed_energy -= energy;
+  return d->energy_held > 0 ? d->energy_at_limit / d->energy_held : 1;
 }
 
-static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment,
-                       BreakCause cause)
+/** Returns the energy of a stranded bond at its limit, of which the part inside the body counts. A stranded bond lost
+ *  its members to other broken bonds; its points lost the energy with these members. */
+static double stranded_energy(const Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour)
 {
-  const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
-  const int32_t a = number[place], b = number[neighbour];
+  const Criterion *criterion = d->failure.criterion;
+  if (!criterion || !criterion->energy_at_limit) return 0;
+  const double inside = ((d->counted[slice * SLICE + lane] > 0) + (d->counted[neighbour] > 0)) / 2.0;
+  return inside * criterion->energy_at_limit(&d->failure, &d->family, slice, slot, lane) / (1 + d->failure.beyond);
+}
+
+/** Breaks a bond. @return the energy that it held where the share of the limit in it is that of all bonds of the step:
+ *  where bonds share points, what each takes depends on their order, and only the sum does not */
+static double break_bond(Domain *d, const BreakingBond *b, const Moment *moment)
+{
+  const int32_t place = (int32_t)(b->slice * SLICE + b->lane), neighbour = b->neighbour, *number = d->particles->number;
+  const int32_t one = number[place], other = number[neighbour];
   const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
   StoredEnergy energy;
   const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
-  BrokenBond bond = {moment->step, moment->time, a < b ? a : b, a < b ? b : a, cause, NAN, NAN};
-  if (d->failure.criterion) bond.value = breaking_measure(d, slice, slot, lane, &bond.limit);
-  const double share = find_share(d, slice, slot, lane, moment, &bond);
-  if (cause != BREAK_LIMIT) bond.value = bond.limit = NAN;
+  const bool limited = b->cause == BREAK_LIMIT, isolated = b->cause == BREAK_ISOLATED;
+  const BrokenBond bond = {moment->step,
+                           moment->time,
+                           one < other ? one : other,
+                           one < other ? other : one,
+                           b->cause,
+                           limited ? b->value : NAN,
+                           limited ? b->limit : NAN};
+  const double share = isolated ? 1 : find_share(d, b, moment);
+  double shared = 0;
   if (own->type->bond_energy) {
-    own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
-    book(d, own->type->face_force ? energy.inside : (their == own ? (inside + beyond) / 2 : inside) * energy.received,
-         share);
+    own->type->bond_energy(own->formulation, b->slice, b->slot, b->lane, moment->time_step, &energy);
+    if (own->type->face_force)
+      shared += energy.inside;
+    else
+      book(d, (their == own ? (inside + beyond) / 2 : inside) * energy.received, share);
   }
   if (their != own && their->type->bond_energy) {
     their->type->bond_energy(their->formulation, neighbour / SLICE, family_slot(&d->family, neighbour, place),
                              neighbour % SLICE, moment->time_step, &energy);
-    book(d, their->type->face_force ? energy.inside : beyond * energy.received, share);
+    if (their->type->face_force)
+      shared += energy.inside;
+    else
+      book(d, beyond * energy.received, share);
   }
   if (domain_record(d, &bond)) {
     d->out_of_memory = true;
-    return;
+    return shared;
   }
   family_break(&d->family, place, neighbour);
   forces_bond_broke(&d->forces, place, neighbour);
   d->suspects[neighbour / SLICE] = 1;   /* so that its family is renewed */
   d->look_again[neighbour / SLICE] = 0; /* families that lose a bond may pull more at others */
+  return shared;
 }
 
 /** True if a bond was squeezed at the beginning of the step. It has then done more work in this step than it had received, and would
@@ -203,16 +218,28 @@ static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond
   return square < (1 - 1e-9) * natural * natural;
 }
 
-/** What to do with the bonds that break. */
-typedef enum Deed { COUNT_THEM, NOTE_THEM, BREAK_THEM } Deed;
+/** Adds a bond to those that break in the step under way, with its value and limit before any of them breaks. */
+static void take_breaking(Domain *d, BreakingBond *b)
+{
+  if (!make_room((void **)&d->breaking, sizeof *d->breaking, d->breaking_count, &d->breaking_capacity)) {
+    d->out_of_memory = true;
+    return;
+  }
+  b->value = b->limit = NAN;
+  if (d->failure.criterion) b->value = breaking_measure(d, b->slice, b->slot, b->lane, &b->limit);
+  d->breaking[d->breaking_count++] = *b;
+}
 
-/** Goes through the bonds of the suspect slices in order. @return how many break; each may be met from both its ends, of which those outside the body's
- *  supports do not count: what breaks there is the image of what breaks inside */
-static int64_t judge(Domain *d, const Moment *moment, Deed deed)
+/** Goes through the bonds of the suspect slices in order and judges them while all are intact.
+ *  @param[in] takes  whether the bonds that break are put into d->breaking
+ *  @return how many break; each may be met from both its ends, of which those outside the body's supports do not count:
+ *  what breaks there is the image of what breaks inside */
+static int64_t judge(Domain *d, const Moment *moment, bool takes)
 {
   const Family *f = &d->family;
   const uint8_t *gave_up = d->gave_up;
   int64_t count = 0;
+  d->breaking_count = 0;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
     for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
@@ -225,11 +252,8 @@ static int64_t judge(Domain *d, const Moment *moment, Deed deed)
                       !was_squeezed(d, moment, &bond, place)))
           continue;
         count += !body_outside(&d->body, d->particles->number[place]);
-        if (deed == NOTE_THEM) {
-          note_torn(d, place);
-          note_torn(d, bond.neighbour);
-        }
-        if (deed == BREAK_THEM) break_bond(d, s, slot, lane, bond.neighbour, moment, law ? BREAK_LAW : BREAK_LIMIT);
+        BreakingBond b = {s, slot, lane, bond.neighbour, law ? BREAK_LAW : BREAK_LIMIT, NAN, NAN};
+        if (takes) take_breaking(d, &b);
       }
   }
   return count;
@@ -242,15 +266,15 @@ static void raise_limits(Domain *d, const Moment *moment)
   const int64_t most = 2 * moment->most; /* each bond may count twice */
   double *beyond = &d->failure.beyond, low = 0, high = 0.5;
   int64_t above;
-  if (!moment->most || !d->failure.criterion || judge(d, moment, COUNT_THEM) <= most) return;
+  if (!moment->most || !d->failure.criterion || judge(d, moment, false) <= most) return;
   const double endless = 1e30; /* bonds of laws that gave up count whatever the limits are */
-  while (*beyond = high, (above = judge(d, moment, COUNT_THEM)) > most && high < endless) {
+  while (*beyond = high, (above = judge(d, moment, false)) > most && high < endless) {
     low = high;
     high *= 2;
   }
   while (high - low > close * (1 + high)) {
     *beyond = (low + high) / 2;
-    const int64_t count = judge(d, moment, COUNT_THEM);
+    const int64_t count = judge(d, moment, false);
     if (count > most) {
       low = *beyond;
       continue;
@@ -261,9 +285,11 @@ static void raise_limits(Domain *d, const Moment *moment)
   *beyond = above ? high : low;
 }
 
-/** Breaks intact bonds that can carry nothing any more, since others around them broke: what counts bonds, and contact, should know. Slices beside
- *  broken bonds are among the suspects. @return whether there were any */
-static bool break_stranded(Domain *d, const Moment *moment, double shed_before)
+/** Breaks intact bonds that can carry nothing any more, since others around them broke: what counts bonds, and contact,
+ *  should know. Slices beside broken bonds are among the suspects. What they still held is fracture energy.
+ *  @param[in,out] limits  grows by their energies at their limits
+ *  @return whether there were any */
+static bool break_stranded(Domain *d, const Moment *moment, double *limits)
 {
   const Family *f = &d->family;
   const int64_t before = d->broken_count;
@@ -278,8 +304,9 @@ static bool break_stranded(Domain *d, const Moment *moment, double shed_before)
           if (kept && kept[s * SLICE + lane] & kept[neighbour]) continue;
           note_late(d, (int32_t)(s * SLICE + lane));
           note_late(d, neighbour);
-          book_stranded(d, s, slot, lane, neighbour, shed_before);
-          break_bond(d, s, slot, lane, neighbour, moment, BREAK_ISOLATED);
+          *limits += stranded_energy(d, s, slot, lane, neighbour);
+          const BreakingBond bond = {s, slot, lane, neighbour, BREAK_ISOLATED, NAN, NAN};
+          book(d, break_bond(d, &bond, moment), 1);
         }
   }
   return d->broken_count > before;
@@ -287,9 +314,16 @@ static bool break_stranded(Domain *d, const Moment *moment, double shed_before)
 
 static void break_suspects(Domain *d, const Moment *moment)
 {
-  const double shed_before = d->shed_energy;
-  judge(d, moment, BREAK_THEM);
-  while (d->broken_count > d->broken_before && !d->out_of_memory && break_stranded(d, moment, shed_before)) continue;
+  double shared = 0, stranded = 0;
+  for (int64_t n = 0; n < d->breaking_count && !d->out_of_memory; ++n) {
+    const BreakingBond *b = &d->breaking[n];
+    if (d->family.intact[b->slot] >> b->lane & 1) shared += break_bond(d, b, moment); /* not yet from its other end */
+  }
+  while (d->broken_count > d->broken_before && !d->out_of_memory && break_stranded(d, moment, &stranded)) continue;
+  /* Energy at the limits of stranded bonds is fracture energy, as far as the others shed so much. */
+  const double at_limits = mean_share(d) * shared, fracture = fmin(at_limits + stranded, fmax(at_limits, shared));
+  d->fracture_energy += fracture;
+  d->shed_energy += shared - fracture;
   uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
@@ -349,10 +383,10 @@ void domain_settle(Domain *d, const Region *region)
   TEAM_SINGLE if (d->particles->free_growth) domain_tell_strains(d, d->clock.time);
   TEAM_SINGLE
   for (int64_t n = 0; n < d->torn_count; ++n) {
-    const double share = d->energy_held > 0 ? d->energy_at_limit / d->energy_held : 1;
     if (domain_region(d, d->torn[n].place) != region) continue;
     carry_less(d, &d->torn[n]);
-    if (d->counted[d->torn[n].place] > 0) book(d, d->torn[n].received - d->torn[n].carried - d->torn[n].control, share);
+    if (d->counted[d->torn[n].place] > 0)
+      book(d, d->torn[n].received - d->torn[n].carried - d->torn[n].control, mean_share(d));
   }
 }
 
@@ -388,11 +422,13 @@ void domain_break(Domain *d, const Moment *moment)
   TEAM_SINGLE
   {
     d->any_suspect = memchr(d->suspects, 1, (size_t)d->particles->slices) != NULL;
-    bool shared = false; /* energies of bonds */
-    for (int r = 0; r < d->region_count; ++r) shared |= !d->regions[r].type->bond_energy;
     if (d->any_suspect) domain_halve_strains(d);
     if (d->any_suspect) raise_limits(d, moment);
-    if (d->any_suspect && shared) judge(d, moment, NOTE_THEM);
+    if (d->any_suspect) judge(d, moment, true);
+    for (int64_t n = 0; d->any_suspect && n < d->breaking_count; ++n) {
+      note_torn(d, (int32_t)(d->breaking[n].slice * SLICE + d->breaking[n].lane));
+      note_torn(d, d->breaking[n].neighbour);
+    }
   }
   if (!d->any_suspect) return;
   TEAM_FOR (n, d->torn_count) find_received(d, &d->torn[n]);

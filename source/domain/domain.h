@@ -74,6 +74,15 @@ typedef struct BrokenBond {
   double value, limit; /* of the failure criterion, in its dimension; NaN: none, or another cause */
 } BrokenBond;
 
+/** A bond that breaks in the step under way, as judged while all bonds are intact. */
+typedef struct BreakingBond {
+  int64_t slice, slot;
+  int lane;
+  int32_t neighbour;
+  BreakCause cause;
+  double value, limit; /* of the failure criterion, in its dimension; NaN: none */
+} BreakingBond;
+
 /** Returns the word for a cause in result files and messages. */
 const char *break_cause_word(BreakCause cause);
 
@@ -160,6 +169,8 @@ typedef struct Domain {
   double shed_energy;
   /* Sums over the bonds that break in the step under way: energy at the limit and energy held, but for a factor. */
   double energy_at_limit, energy_held;
+  BreakingBond *breaking; /* those of the step under way, each from both its ends */
+  int64_t breaking_count, breaking_capacity;
   Torn *torn;
   int64_t torn_count, torn_capacity;
   uint8_t *is_torn;             /* [places] 1, or 2 where its family carries less from this step on */

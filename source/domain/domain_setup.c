@@ -434,6 +434,7 @@ void domain_destroy(Domain *d)
   free(d->failure.kept);
   free(d->broken);
   free(d->torn);
+  free(d->breaking);
   free(d->is_torn);
   *d = (Domain){0};
 }
