@@ -171,8 +171,10 @@ static void a_factor_is_found_by_a_reduction_alone(void **state)
     const char *load, *stage;
   } others[] = {{", {gravity: [1e-3, 0], history: {ramp to: 1}}", ""},
                 {"", ", {name: after, static: {increments: 1}}"},
-                {", {gravity: [1e-3, 0]}", ""}};
-  for (int k = 0; k < 3; ++k) {
+                {", {gravity: [1e-3, 0]}", ""},
+                /* which comes within the increment that finds no equilibrium */
+                {", {gravity: [3, 0], history: {table: [[0, 0], [0.06, 0], [0.1, 1]]}}", ""}};
+  for (int k = 0; k < 4; ++k) {
     const bool found = k == 2; /* a load that stays */
     breccia_model *m =
         slope_of("formulation: ordinary", J2 "yield stress: \"${sqrt(3)*110}\"", 5, others[k].load, others[k].stage);
