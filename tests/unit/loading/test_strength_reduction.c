@@ -173,7 +173,7 @@ static void a_factor_is_found_by_a_reduction_alone(void **state)
                 {"", ", {name: after, static: {increments: 1}}"},
                 {", {gravity: [1e-3, 0]}", ""},
                 /* which comes within the increment that finds no equilibrium */
-                {", {gravity: [3, 0], history: {table: [[0, 0], [0.06, 0], [0.1, 1]]}}", ""}};
+                {", {gravity: [12, 0], history: {table: [[0, 0], [0.06, 0], [0.0601, 1]]}}", ""}};
   for (int k = 0; k < 4; ++k) {
     const bool found = k == 2; /* a load that stays */
     breccia_model *m =
