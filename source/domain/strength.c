@@ -52,7 +52,7 @@ void domain_tell_strength(Domain *d, double time)
 {
   const double least = 1e-6;
   if (!d->strains.loading) return;
-  const double factor = fmax(least, loading_strength_reduction(d->strains.loading, time));
+  const double factor = fmax(least, loading_strength_reduction(d->strains.loading, d->strains.loading->stage, time));
   bool changed = false;
   for (int k = 0; k < d->material_count; ++k) {
     Material *m = &d->materials[k];

@@ -253,10 +253,15 @@ void loading_start_platens(Loading *loading, const Particles *particles, double 
 /** Rows of when and where loads began that are not there from the start. */
 void loading_state(Loading *loading, StateList *list);
 
+/** Returns true if a load acts in a stage. */
+static inline bool load_acts_in(const Load *load, int64_t stage)
+{
+  return load->first <= stage && stage < load->behind;
+}
 /** Whether a load acts in the stage under way. */
 static inline bool load_acts(const Loading *loading, const Load *load)
 {
-  return load->first <= loading->stage && loading->stage < load->behind;
+  return load_acts_in(load, loading->stage);
 }
 /** Factor of a load at a time of the run. */
 double load_factor(const Load *load, double time);
@@ -283,8 +288,9 @@ void loading_grown_strains(const Loading *loading, const LoadStrains *strains, d
 /** Puts what strains have changed by since the stage under way began, at that time of the run; NaN: all of them. loading_strain does not know of it. */
 void loading_changed_strains(const Loading *loading, const LoadStrains *strains, double begin, double time);
 extern const LoadType gravity_load, strength_reduction_load;
-/** Factor by which loads divide strengths at a time of the run; 1: none does. */
-double loading_strength_reduction(const Loading *loading, double time);
+/** Returns the factor by which the loads of a stage divide strengths at a time of the run; 1: none does, as in stage -1,
+ *  before the run. */
+double loading_strength_reduction(const Loading *loading, int64_t stage, double time);
 /** Whether a load of a deck is an initial strain of particles. */
 bool load_strains_places(const LoadSpec *load);
 extern const LoadType initial_strain_load;

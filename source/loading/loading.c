@@ -447,12 +447,12 @@ void loading_mark_held(const Loading *loading, uint8_t *held)
   }
 }
 
-double loading_strength_reduction(const Loading *loading, double time)
+double loading_strength_reduction(const Loading *loading, int64_t stage, double time)
 {
   double factor = 1;
   for (int k = 0; k < loading->count; ++k) {
     const Load *load = &loading->loads[k];
-    if (load->type != &strength_reduction_load || !load_acts(loading, load)) continue;
+    if (load->type != &strength_reduction_load || !load_acts_in(load, stage)) continue;
     factor *= 1 + (load->value->number - 1) * load_factor(load, time);
   }
   return factor;

@@ -32,7 +32,7 @@ int run_note_reduction(breccia_model *model, Error *error)
 {
   const Solver *s = &model->solver;
   Peaks *p = &model->peaks;
-  const double factor = loading_strength_reduction(s->loading, s->clock.time);
+  const double factor = solver_strength_reduction(s);
   if (!s->type->rests || !(factor > 1) || p->reduction_held > 0) return BRECCIA_OK;
   const int status = domain_observe(&model->domain, error);
   const YieldedEnergy yielded = status ? (YieldedEnergy){0} : run_yielded_energy(&model->domain);
@@ -97,7 +97,7 @@ void run_add_measures(const breccia_model *model, Text *text)
   const double step = ground_step_spacings(&d->body, s->loading);
   int32_t first;
   text_add(text, "  \"measures\": {\"displacement\": %.10g", largest_displacement(d->particles));
-  run_add_measure(text, "strength reduction", loading_strength_reduction(s->loading, s->clock.time));
+  run_add_measure(text, "strength reduction", solver_strength_reduction(s));
   const double lost = s->records[s->clock.stage].lost_reduction;
   run_add_measure(text, "lost reduction", lost > 0 ? lost : NAN);
   run_add_measure(text, "step", step);

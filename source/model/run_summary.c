@@ -389,17 +389,21 @@ static void tell_control(const Domain *d, double stored, Text *t)
 static void tell_held(const breccia_model *model, Text *t)
 {
   const Peaks *p = &model->peaks;
-  const Region *region = &model->domain.regions[0];
-  const ControlType *control = region->type->control;
+  bool constant = false; /* the influence of a region with control does not decrease with distance */
   if (!(p->reduction_held > 0)) return;
+  for (const Region *r = model->domain.regions; r < model->domain.regions + model->domain.region_count; ++r) {
+    const ControlType *control = r->type->control;
+    constant |= control && control->is_active(r->formulation) && !control->influence_decreases(r->formulation);
+  }
   text_add(
       t,
       "warning: from a factor of %.4g on, control of zero-energy modes holds more than %.0f %% of the energy that is "
       "stored where laws have yielded: ground that slides comes to rest by it",
       p->reduction_held, 100 * run_most_sliding);
   if (p->reduction_free > 0) text_add(t, "; take no factor of safety above %.4g", p->reduction_free);
-  if (control && !control->influence_decreases(region->formulation))
-    text_add(t, ", or take 'influence: conical' with 'zero-energy control: {silling: 0.2, fades: yielding}'");
+  if (constant)
+    text_add(t, ", or take 'influence: conical' and 'horizon: 2.015 spacings' with 'zero-energy control: {silling: "
+                "0.2, fades: yielding}'");
   text_add(t, "\n");
 }
 
@@ -411,8 +415,7 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
   bool any = false;
   for (int k = 0; k < model->loading.count; ++k)
     any |= model->loading.loads[k].type == &strength_reduction_load && load_acts(s->loading, &model->loading.loads[k]);
-  const double factor = loading_strength_reduction(s->loading, s->clock.time),
-               lost = s->records[s->clock.stage].lost_reduction;
+  const double factor = solver_strength_reduction(s), lost = s->records[s->clock.stage].lost_reduction;
   if (any && lost > 0)
     text_add(t,
              "factor of safety %.4g: the body is at rest with strengths divided by it; divided by %.4g they gave no "

@@ -70,6 +70,15 @@ static double distortion_size(const Domain *d)
   return size;
 }
 
+int32_t distortion_first_impossible(const Domain *d)
+{
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    const int32_t i = d->particles->place_of[n];
+    if (distortion_is_inverted(d, n) && !distortion_may_be_spent(d, i)) return i;
+  }
+  return -1;
+}
+
 int distortion_watch(const Domain *d, const Clock *clock, bool rests, const char *loads, Error *error)
 {
   const Particles *p = d->particles;
@@ -80,18 +89,15 @@ int distortion_watch(const Domain *d, const Clock *clock, bool rests, const char
         "step %lld (time %g %s): particles have moved apart by %.3g, %.3g sizes of the body, and more than "
         "%g are taken for a mistake; look at motions, loads and their units%s",
         (long long)clock->step, clock->time, clock->time_unit, apart, apart / size, most_apart, loads);
-  for (int64_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    if (!distortion_is_inverted(d, n) || distortion_may_be_spent(d, i)) continue;
-    return error_add(error, BRECCIA_FAILURE,
-                     "step %lld (time %g %s): particle %d at [%.4g, %.4g, %.4g] is turned inside out (det F = %.3g), "
-                     "and no body can be deformed so; %s%s",
-                     (long long)clock->step, clock->time, clock->time_unit, p->number[i], p->position[0][i],
-                     p->position[1][i], p->position[2][i], distortion_determinant(d, i),
-                     rests ? "the body has failed before: take smaller 'increments' to find the load that it bears, or "
-                             "look at motions, loads and their units"
-                           : "look at motions, loads and their units, or take smaller steps",
-                     loads);
-  }
-  return BRECCIA_OK;
+  const int32_t i = distortion_first_impossible(d);
+  if (i < 0) return BRECCIA_OK;
+  return error_add(error, BRECCIA_FAILURE,
+                   "step %lld (time %g %s): particle %d at [%.4g, %.4g, %.4g] is turned inside out (det F = %.3g), "
+                   "and no body can be deformed so; %s%s",
+                   (long long)clock->step, clock->time, clock->time_unit, p->number[i], p->position[0][i],
+                   p->position[1][i], p->position[2][i], distortion_determinant(d, i),
+                   rests ? "the body has failed before: take smaller 'increments' to find the load that it bears, or "
+                           "look at motions, loads and their units"
+                         : "look at motions, loads and their units, or take smaller steps",
+                   loads);
 }

@@ -11,6 +11,9 @@
  *  @param[out] first  place of the first of them */
 int64_t distortion_inverted(const Domain *domain, int32_t *first);
 
+/** Returns the place of the first particle that still carries load and is turned inside out; -1: there is none. */
+int32_t distortion_first_impossible(const Domain *domain);
+
 /** Fails if particles that still carry load are turned inside out, or if particles with bonds have moved apart by more
  * than 100 sizes of the body.
  *  @param[in] rests  true: the solver finds equilibria, so that the body has failed under its loads

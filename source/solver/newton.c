@@ -544,6 +544,7 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
   case NEWTON_STOPPED: snprintf(words, size, "stopped on request"); break;
   case NEWTON_ASTRAY: snprintf(words, size, "an iteration led far away from the body as it was"); break;
   case NEWTON_COARSE: snprintf(words, size, "the body softens on the way, which is gone in smaller parts"); break;
+  case NEWTON_INVERTED: snprintf(words, size, "particles are turned inside out in the equilibrium found"); break;
   case NEWTON_FAR:
     snprintf(words, size, "particles have moved by more than %.3g against each other, farther than contact looks ahead",
              forces_room(&d->forces));

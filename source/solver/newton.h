@@ -58,10 +58,11 @@ typedef enum NewtonOutcome {
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
   NEWTON_COARSE, /* there is equilibrium, but the body softens on a way to it that the increment skips: said by who asks for it */
-  NEWTON_ASTRAY,  /* an iteration has led so far away that what is found from there would not be the next equilibrium */
-  NEWTON_FAR,     /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
-  NEWTON_STOPPED, /* on request */
-  NEWTON_FAILED,  /* the reason is in the error */
+  NEWTON_ASTRAY, /* an iteration has led so far away that what is found from there would not be the next equilibrium */
+  NEWTON_FAR,    /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
+  NEWTON_INVERTED, /* there is equilibrium, but with particles turned inside out: said by who asks for it */
+  NEWTON_STOPPED,  /* on request */
+  NEWTON_FAILED,   /* the reason is in the error */
 } NewtonOutcome;
 
 /** Forces beside those of bonds and loads that are to be balanced too: of inertia and damping. The tangent has theirs by `mass_factor` and

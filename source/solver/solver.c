@@ -94,6 +94,13 @@ static void foresee(Solver *s)
   s->clock.end_time = s->clock.stage_end + time;
 }
 
+double solver_strength_reduction(const Solver *s)
+{
+  int64_t stage = s->clock.stage;
+  while (stage >= 0 && !(s->clock.time > s->records[stage].begin)) --stage;
+  return loading_strength_reduction(s->loading, stage, s->clock.time);
+}
+
 const char *solver_stage_name(const Solver *s, int64_t stage, char *name, size_t size)
 {
   if (stage_of(s, stage)->name)
@@ -431,7 +438,7 @@ static void solver_tell_loads(const Solver *s, Text *text)
     units_name(s->reader->units, dimension_find(dimension), unit, sizeof unit);
     text_add(text, "%s%s (line %d) ", told++ ? ", " : "; loads: ", kind, load->spec->head.node->line);
     if (load->type == &strength_reduction_load)
-      text_add(text, "at %.6g", loading_strength_reduction(s->loading, s->clock.time));
+      text_add(text, "at %.6g", loading_strength_reduction(s->loading, s->clock.stage, s->clock.time));
     else
       text_add(text, "at %.6g%s%s", load->type->timeless ? magnitude : factor * magnitude, *unit ? " " : "", unit);
   }

@@ -138,6 +138,10 @@ struct SolverType {
 int solver_create(Solver *solver, Text *warning, Error *error);
 void solver_destroy(Solver *solver);
 
+/** Returns the factor by which loads divide strengths in the current state. The loads of a stage in which no time has
+ *  passed do not count: the state is then that of the stage before. */
+double solver_strength_reduction(const Solver *solver);
+
 /** Name of a stage: as in the deck, or its number from 1. @return `name` */
 const char *solver_stage_name(const Solver *solver, int64_t stage, char *name, size_t size);
 

@@ -4,6 +4,7 @@
 
 #include "loading/one_sided.h"
 #include "loading/support.h"
+#include "solver/distortion.h"
 #include "solver/resultants.h"
 #include "solver/vectors.h"
 
@@ -61,6 +62,28 @@ static bool is_coarse(const Static *s, double length)
       work -= 0.5 * s->domain->counted[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
   const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
   return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
+}
+
+/** Returns true if no load but strength reductions changes between two times. */
+static bool static_other_loads_stay(const Static *s, double begin, double end)
+{
+  for (int k = 0; k < s->loading->count; ++k) {
+    const Load *load = &s->loading->loads[k];
+    if (load->type == &strength_reduction_load || !load_acts(s->loading, load) || load_magnitude(load->spec) == 0)
+      continue;
+    if (load_factor(load, begin) != load_factor(load, end)) return false;
+  }
+  return true;
+}
+
+/** Returns true if an increment that only divides strengths further ended in an equilibrium that the body cannot have:
+ *  ground that slides may find rest with particles turned inside out, far away.
+ *  @param[in] begin, end  times of the increment */
+static bool static_is_impossible(const Static *s, double begin, double end)
+{
+  return loading_strength_reduction(s->loading, s->loading->stage, end) >
+             loading_strength_reduction(s->loading, s->loading->stage, begin) &&
+         static_other_loads_stay(s, begin, end) && distortion_first_impossible(s->domain) >= 0;
 }
 
 bool static_may_relax(const Static *s)
@@ -124,9 +147,11 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     increment_begin(&s->increment);
     s->way.bonds = s->way.given_off = s->way.sudden = 0;
   }
+  const double begin = how.again ? s->clock->time - s->clock->time_step : s->clock->time;
   NewtonOutcome outcome = static_press(s, end, how, error);
   if (outcome == NEWTON_CONVERGED && !s->newton.relaxes && !how.again && is_coarse(s, end - s->clock->time))
     outcome = NEWTON_COARSE;
+  if (outcome == NEWTON_CONVERGED && static_is_impossible(s, begin, end)) outcome = NEWTON_INVERTED;
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
     if (how.again) newton_apply_loads(&s->newton, s->clock->time);
@@ -277,15 +302,9 @@ static bool static_finds_reduction(const Solver *run, double end)
   const Clock *clock = &run->clock;
   const double begin = run->records[clock->stage].begin;
   if (clock->stage + 1 < clock->stages || ((const Static *)run->own)->spec->control) return false;
-  for (int k = 0; k < run->loading->count; ++k) {
-    const Load *load = &run->loading->loads[k];
-    if (load->type == &strength_reduction_load || !load_acts(run->loading, load) || load_magnitude(load->spec) == 0)
-      continue;
-    if (load_factor(load, clock->time) != load_factor(load, begin) ||
-        load_factor(load, end) != load_factor(load, begin))
-      return false;
-  }
-  return loading_strength_reduction(run->loading, clock->time) > loading_strength_reduction(run->loading, begin);
+  return static_other_loads_stay(run->own, begin, clock->time) && static_other_loads_stay(run->own, begin, end) &&
+         loading_strength_reduction(run->loading, clock->stage, clock->time) >
+             loading_strength_reduction(run->loading, clock->stage, begin);
 }
 
 /** Notes that the body jumped in the increment that the clock has just counted.
@@ -485,7 +504,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
         break;
       }
       if (static_finds_reduction(run, end)) {
-        run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, end);
+        run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, clock->stage, end);
         end_now(clock);
         static_count_empty_increment(clock);
         break;

@@ -150,7 +150,7 @@ static void slopes_without_end_slide_at_their_closed_form(void **state)
     Error *error = breccia_error_create();
     int status = 0;
     while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
-    const double factor = loading_strength_reduction(&m->loading, m->solver.clock.time),
+    const double factor = solver_strength_reduction(&m->solver),
                  right = slopes[k].cohesion / (gamma * height * sine) + slopes[k].friction / 0.5;
     const double lost = m->solver.records[m->solver.clock.stage].lost_reduction;
     if (status) fail_msg("slope %zu: %s", k, breccia_error_text(error));
@@ -188,6 +188,60 @@ static void a_factor_is_found_by_a_reduction_alone(void **state)
     breccia_error_destroy(&error);
     breccia_model_destroy(&m);
   }
+}
+
+/** The loads of a stage do not count before its first increment has found equilibrium: a stage that fails at once leaves
+ *  the factor of the state in which the body is. */
+static void a_stage_that_fails_at_once_leaves_the_factor_before(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *first, *second;
+    double factor;
+  } runs[] = {{"laws: elastic, static: {increments: 1}", "{strength reduction: 4}", 1},
+              {"static: {increments: 2}, loads: [{strength reduction: 1.02}]",
+               "{strength reduction: 2, history: {table: [[0, 2], [1, 3]]}}", 1.02}};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        UNITS "materials: {m: {" J2 "yield stress: \"${sqrt(3)*110}\"}}\n"
+              "body: {b: {material: m, lattice: square, spacing: 2, thickness: 1, shape: {box: {from: [0, 0], to: [8, "
+              "10]}}}}\n"
+              "peridynamics: {formulation: ordinary, space: plane strain, horizon: 2.015 spacings}\n"
+              "loads: [{gravity: [4.472, -8.944]}, {on: {face: y-}, support: {held: all}}, {on: {face: x+}, support: "
+              "{held: periodic}}]\n"
+              "solve: [{%s}, {loads: [%s], static: {increments: 2, smallest increment: 0.5}}]\n",
+        runs[k].first, runs[k].second);
+    Error *error = breccia_error_create();
+    int status = 0;
+    while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
+    if (!status || m->solver.clock.stage != 1) fail_msg("run %d: %s", k, breccia_error_text(error));
+    assert_near(solver_strength_reduction(&m->solver), runs[k].factor, 1e-12);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Ground that slides far may find rest with particles turned inside out. Such a state is no factor of safety: the
+ *  increment is taken back, and the stage looks for a smaller factor. */
+static void ground_turned_inside_out_has_no_factor(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS "materials: {m: {model: j2, density: 2, Young modulus: 1e5, Poisson ratio: 0.3, yield stress: 54.3}}\n"
+            "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {polygon: {corners: [[0, 0], "
+            "[18, 0], [18, 3], [12, 3], [6, 9], [0, 9]]}}}}\n"
+            "peridynamics: {space: plane strain, influence: conical, zero-energy control: {silling: 0.2, fades: "
+            "yielding}}\n"
+            "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: x+}, support: {held: across}}, {on: {face: "
+            "y-}, support: {held: all}}, {gravity: [0, -10]}, {strength reduction: 3, history: {ramp to: 1}}]\n"
+            "solve: {static: {increments: 10, smallest increment: 1}}\n");
+  Error *error = breccia_error_create();
+  assert_int_equal(breccia_model_step(m, 1, error), BRECCIA_FAILURE);
+  const char *words = breccia_error_text(error);
+  if (!strstr(words, "no equilibrium beyond time 0 ") || strstr(words, "inside out (det F")) fail_msg("%s", words);
+  assert_near(solver_strength_reduction(&m->solver), 1, 0);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
 }
 
 static void wrong_reductions_are_refused(void **state)
@@ -309,6 +363,8 @@ int main(void)
       cmocka_unit_test(strengths_of_all_regions_are_divided),
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
       cmocka_unit_test(a_factor_is_found_by_a_reduction_alone),
+      cmocka_unit_test(a_stage_that_fails_at_once_leaves_the_factor_before),
+      cmocka_unit_test(ground_turned_inside_out_has_no_factor),
       cmocka_unit_test(wrong_reductions_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
