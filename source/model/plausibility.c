@@ -670,13 +670,21 @@ static const char *ground_step_remedy(const breccia_model *model)
   const Domain *d = &model->domain;
   const Region *region = &d->regions[0];
   const ControlType *control = region->type->control;
+  const double longest = 2.2; /* spacings */
   if (!control)
-    return ", or take 'formulation: correspondence' with 'influence: conical' and 'zero-energy control: {silling: 0.2, "
-           "fades: yielding}', whose families resist slip lines by their strength alone";
+    return ", or take 'formulation: correspondence' with 'influence: conical', 'horizon: 2.015 spacings' and "
+           "'zero-energy control: {silling: 0.2, fades: yielding}', whose families resist slip lines by their strength "
+           "alone";
   if (control->keeps_stiffness(region->formulation, main_material(model)))
-    return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical'";
-  if (control->influence_decreases(region->formulation)) return "";
-  return ", or take 'influence: conical', with which control holds a twentieth of the strength on slip lines";
+    return ", and let control fade by 'zero-energy control: {silling: 0.2, fades: yielding}' with 'influence: conical' "
+           "and 'horizon: 2.015 spacings'";
+  if (control->influence_decreases(region->formulation))
+    return d->family.horizon < longest * d->body.largest_spacing
+               ? ""
+               : "; if its control fades, take 'horizon: 2.015 spacings': with a longer horizon zero-energy modes let "
+                 "ground slide early, as a slope of clay at a factor of 1.05 instead of 1.50 at 3.015 spacings";
+  return ", or take 'influence: conical' and 'horizon: 2.015 spacings', with which control holds a twentieth of the "
+         "strength on slip lines";
 }
 
 /** Adds how far a factor of safety comes out too high, where strengths are divided. */

@@ -161,8 +161,14 @@ solve: [{name: at rest, static: {increments: 5}},
 pictures: []
 Y
   "$breccia" run clay.yaml > out 2> errors
-  grep -q 'warning: from a factor of 1\.[456][0-9]* on, control of zero-energy modes holds more than 25 % of .*; take no factor of safety above 1\.[345][0-9]*, or take .influence: conical' out errors ||
+  grep -q 'warning: from a factor of 1\.[456][0-9]* on, control of zero-energy modes holds more than 25 % of .*; take no factor of safety above 1\.[345][0-9]*, or take .influence: conical. and .horizon: 2.015 spacings' out errors ||
     fail "ground held by control: $(cat out errors)"
+  # With conical influence zero-energy modes let the slope slide early, the more so the longer the horizon.
+  for spacings in 2.015 3.015; do
+    "$breccia" check clay.yaml --set peridynamics.influence=conical --set peridynamics.horizon="$spacings" > out 2> errors
+    grep -q "zero-energy modes let ground slide early" out
+    equal "words on zero-energy modes at a horizon of $spacings" $? "$([ $spacings = 2.015 ] && echo 1 || echo 0)"
+  done
 fi
 refused() { # name, words, arguments
   local name=$1 words=$2
