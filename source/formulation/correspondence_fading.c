@@ -15,7 +15,8 @@
  * because the energy of a pressure does not change as ground slides, and, if the influence decreases with distance, of
  *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
  * Slip lines are narrower than families. The strain of a family contains a part of the motion of a slip line; control
- * would resist the other part in addition to the strength of the law.
+ * would resist the other part in addition to the strength of the law. The last bound applies to points near yielded
+ * ones, too (two families wide): their laws stay elastic beside a slip line, and their control would hold it.
  *
  * Each point has its own factor for all its bonds, so that z stays what is left by the best fit, and forces follow from an energy. A step takes the
  * factors that were committed with the one before: forces are then linear in what they were, and the tangent symmetric. */
@@ -27,7 +28,7 @@
 #include <string.h>
 
 static const double most_stored = 0.125;  /* share of the energy at the onset of softening that control may store */
-static const double most_resisted = 0.05; /* share of the shear stress of a yielding law that control may carry */
+static const double most_resisted = 0.03; /* share of the shear stress of a yielding law that control may carry */
 static const double roundings = 1e-6;     /* loss of stiffness below which a point counts as intact */
 
 /** Marks of slices (`mark`) and of places (`near`). */
@@ -244,7 +245,7 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, double *const *u, int64
   return lanes_set(0.5) * sum;
 }
 
-/** Returns the shares of control for four points whose laws have yielded. Control then resists motions outside of the
+/** Returns the shares of control for four points whose laws, or those of points near, have yielded. Control then resists motions outside of the
  * strain with at most `most_resisted` of the shear stress q = sqrt(J_2):
  *   f G sqrt(2 w / G) = most_resisted q,
  * where sqrt(2 w / G) is the shear strain that would store the energy w.
@@ -292,9 +293,10 @@ static void fade(const Correspondence *c, const Sweep *sweep)
       const bool cracked = softens && f->mark[slice] & (SOFTENED | BESIDE), flows = may && yields && !softens;
       if (cracked || flows) {
         const Lanes stored = stored_whole(c, sweep->displacement, place, sweep->carry + here);
-        const Lanes resisting = flows ? lanes_least(left, resisting_share(m, sweep, here, stored)) : left;
-        left = lanes_choose(left < one, resisting, left);
-        if (cracked) left *= lanes_choose((stored > most) & fading_is_near(f, place), most / stored, one);
+        const LaneMask near = fading_is_near(f, place);
+        if (flows)
+          left = lanes_choose((left < one) | near, lanes_least(left, resisting_share(m, sweep, here, stored)), left);
+        if (cracked) left *= lanes_choose((stored > most) & near, most / stored, one);
       }
       lanes_store(f->found + place, lanes_least(lanes_load(f->next + place), left));
     }

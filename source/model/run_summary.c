@@ -417,10 +417,10 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
     any |= model->loading.loads[k].type == &strength_reduction_load && load_acts(s->loading, &model->loading.loads[k]);
   const double factor = solver_strength_reduction(s), lost = s->records[s->clock.stage].lost_reduction;
   if (any && lost > 0)
-    text_add(t,
-             "factor of safety %.4g: the body is at rest with strengths divided by it; divided by %.4g they gave no "
-             "equilibrium\n",
-             factor, lost);
+    text_add(t, "factor of safety %.4g: the body is at rest with strengths divided by it; divided by %.4g they %s\n",
+             factor, lost,
+             s->records[s->clock.stage].slides > 0 ? "let it slide until it came to rest elsewhere"
+                                                   : "gave no equilibrium");
   else if (any)
     text_add(t, "strengths are divided by %.4g%s\n", factor,
              failed              ? " in the last state that the run came to"

@@ -54,6 +54,8 @@ typedef struct StageRecord {
   double descended,
       relaxed; /* increments in which Newton's method did not come to rest, and whose ends descent by secants, and dynamic relaxation found */
   double lost_reduction; /* strength reduction whose increment ended the stage without equilibrium [-]; 0: none did */
+  double slides;         /* 1: the body came to rest elsewhere in that increment; 0: there was no equilibrium */
+  double elastic_displacement; /* by which static stages judge whether the body slides (static_slide.c) [length] */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 

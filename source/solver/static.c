@@ -262,7 +262,7 @@ static int measure(Solver *run, StepCost *cost, Error *error)
   const bool jumps = domain_may_soften(s->domain) && static_may_relax(s); /* then both other ways may be made */
   if (jumps) cost->bytes += (double)descent_bytes(&s->descent, s->domain->particles);
   if (jumps || s->newton.relaxes) cost->bytes += (double)relaxation_bytes(&s->relaxation, s->domain->particles);
-  if (static_may_go_on_again(s))
+  if (static_may_go_on_again(s) || static_may_slide(s))
     cost->bytes += (double)(solver_kept_bytes(run, KEPT_ALL) + vectors_bytes(s->domain->particles));
   return newton_measure(&s->newton, cost, error);
 }

@@ -14,7 +14,7 @@ int static_keep(Solver *run, Error *error)
 {
   Static *s = run->own;
   state_copy_destroy(&s->whole);
-  if (!static_may_go_on_again(s)) return BRECCIA_OK;
+  if (!static_may_go_on_again(s) && !static_may_slide(s)) return BRECCIA_OK;
   StateList list = {0};
   domain_state(s->domain, &list);
   solver_state(run, &list);

@@ -4,7 +4,6 @@
 
 #include "loading/one_sided.h"
 #include "loading/support.h"
-#include "solver/distortion.h"
 #include "solver/resultants.h"
 #include "solver/vectors.h"
 
@@ -62,28 +61,6 @@ static bool is_coarse(const Static *s, double length)
       work -= 0.5 * s->domain->counted[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
   const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
   return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
-}
-
-/** Returns true if no load but strength reductions changes between two times. */
-static bool static_other_loads_stay(const Static *s, double begin, double end)
-{
-  for (int k = 0; k < s->loading->count; ++k) {
-    const Load *load = &s->loading->loads[k];
-    if (load->type == &strength_reduction_load || !load_acts(s->loading, load) || load_magnitude(load->spec) == 0)
-      continue;
-    if (load_factor(load, begin) != load_factor(load, end)) return false;
-  }
-  return true;
-}
-
-/** Returns true if an increment that only divides strengths further ended in an equilibrium that the body cannot have:
- *  ground that slides may find rest with particles turned inside out, far away.
- *  @param[in] begin, end  times of the increment */
-static bool static_is_impossible(const Static *s, double begin, double end)
-{
-  return loading_strength_reduction(s->loading, s->loading->stage, end) >
-             loading_strength_reduction(s->loading, s->loading->stage, begin) &&
-         static_other_loads_stay(s, begin, end) && distortion_first_impossible(s->domain) >= 0;
 }
 
 bool static_may_relax(const Static *s)
@@ -145,7 +122,7 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     increment_begin_again(&s->increment);
   } else {
     increment_begin(&s->increment);
-    s->way.bonds = s->way.given_off = s->way.sudden = 0;
+    s->way.bonds = s->way.given_off = s->way.sudden = s->travelled = 0;
   }
   const double begin = how.again ? s->clock->time - s->clock->time_step : s->clock->time;
   NewtonOutcome outcome = static_press(s, end, how, error);
@@ -158,6 +135,7 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     return outcome;
   }
   if (how.again) vectors_combine(s->domain, 1, s->way.moved, 1, s->newton.moved);
+  if (static_may_slide(s)) static_note_motion(s);
   book(s, how.again ? s->way.moved : s->newton.moved);
   one_sided_accept(s->loading);
   if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
@@ -182,10 +160,12 @@ static void static_count_empty_increment(Clock *clock)
 }
 
 /** Says why an increment is not taken as it is. */
-static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
+static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled, bool slides)
 {
   char words[320];
-  if (!settled)
+  if (slides)
+    text_add(s->newton.log, "    given back: the body slides by %.3g\n", s->travelled);
+  else if (!settled)
     text_add(s->newton.log,
              "    given back: the control of zero-energy modes as it is leaves %.2g of the forces out of balance\n",
              s->lag);
@@ -294,19 +274,6 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
   end_now(clock);
 }
 
-/** Returns true if the stage determines a factor of safety: the stage is the last one, a strength reduction has grown
- *  since its beginning, and no other load has changed. The loss of equilibrium is then the result, not a failure.
- *  @param[in] end  time of the increment that found no equilibrium */
-static bool static_finds_reduction(const Solver *run, double end)
-{
-  const Clock *clock = &run->clock;
-  const double begin = run->records[clock->stage].begin;
-  if (clock->stage + 1 < clock->stages || ((const Static *)run->own)->spec->control) return false;
-  return static_other_loads_stay(run->own, begin, clock->time) && static_other_loads_stay(run->own, begin, end) &&
-         loading_strength_reduction(run->loading, clock->stage, clock->time) >
-             loading_strength_reduction(run->loading, clock->stage, begin);
-}
-
 /** Notes that the body jumped in the increment that the clock has just counted.
  *  @param[in] begin  time at the beginning of the increment */
 static void note_jump(const Solver *run, double begin)
@@ -401,7 +368,7 @@ NewtonOutcome static_try_others(Static *s, NewtonOutcome outcome, double end, bo
   const TryBy ways[] = {bonds ? BY_RELAXATION : BY_SECANTS, bonds ? BY_SECANTS : BY_RELAXATION};
   for (int k = 0; k < 2 && outcome < NEWTON_STOPPED && !came_to_equilibrium(outcome); ++k) {
     if (ways[k] == BY_RELAXATION && !*may_relax) continue;
-    tell_refused(s, outcome, true);
+    tell_refused(s, outcome, true, false);
     outcome = static_try(s, end, (Try){.by = ways[k]}, error);
     if (outcome == NEWTON_CONVERGED && ways[k] > *way) *way = ways[k];
     if (ways[k] == BY_RELAXATION) *may_relax = came_to_equilibrium(outcome);
@@ -422,7 +389,7 @@ static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *wa
   s->newton.has_others = s->newton.wants_stable = false;
   if (s->spec->control && domain_bonds_may_soften(s->domain) && outcome < NEWTON_STOPPED &&
       !came_to_equilibrium(outcome)) {
-    tell_refused(s, outcome, true);
+    tell_refused(s, outcome, true, false);
     s->newton.begins_by_secants = true;
     outcome = static_try(s, end, (Try){0}, error);
     s->newton.begins_by_secants = false;
@@ -462,6 +429,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   int64_t iterations = 0;
   bool may_relax = true;
   TryBy way;
+  static_begin_reduction(run);
   if (increment_keep(&s->increment, run, error) || static_keep(run, error)) return BRECCIA_FAILURE;
   s->newton.log = &run->log;
   s->newton.interrupted = run->interrupted;
@@ -469,7 +437,8 @@ int static_advance(Solver *run, Text *warning, Error *error)
     const double begin = clock->time, end = increment_end(run, s->next);
     text_add(&run->log, "increment %lld, from time %.6g to %.6g %s\n", (long long)clock->step + 1, begin, end,
              clock->time_unit);
-    bool settled = true;
+    const bool finds = static_finds_reduction(run, end);
+    bool settled = true, slides = false;
     way = BY_METHOD;
     NewtonOutcome outcome = try_first(s, end, &may_relax, &way, error);
     if (outcome == NEWTON_FAILED) return give_up(s, &before, BRECCIA_FAILURE);
@@ -479,18 +448,19 @@ int static_advance(Solver *run, Text *warning, Error *error)
       clock->time = end;
       iterations = s->newton.iterations;
       const int status = static_settle(run, &outcome, &settled, &way, error);
-      if (settled) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
+      slides = finds && settled && outcome == NEWTON_CONVERGED && !status && static_slides(run, begin);
+      if (settled && !slides) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
       if (status) return BRECCIA_FAILURE;
-      if (settled && outcome == NEWTON_CONVERGED) break;
-      if (settled && static_hands_over(s->spec)) {
+      if (settled && outcome == NEWTON_CONVERGED && !slides) break;
+      if (settled && !slides && static_hands_over(s->spec)) {
         hand_over(run, outcome, true, warning);
         break;
       }
-      if (settled) return fail_with_broken(s, outcome, error);
+      if (settled && !slides) return fail_with_broken(s, outcome, error);
       if (static_give_back(run, error)) return BRECCIA_FAILURE;
       if (newton_is_interrupted(&s->newton)) return give_up(s, &before, BRECCIA_INTERRUPTED);
     }
-    tell_refused(s, outcome, settled);
+    tell_refused(s, outcome, settled, slides);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
       if (s->spec->control && s->newton.change_forces[0] && !s->takes_coarse) { /* try a long increment */
@@ -503,8 +473,9 @@ int static_advance(Solver *run, Text *warning, Error *error)
         static_count_empty_increment(clock);
         break;
       }
-      if (static_finds_reduction(run, end)) {
+      if (finds) {
         run->records[clock->stage].lost_reduction = loading_strength_reduction(run->loading, clock->stage, end);
+        run->records[clock->stage].slides = slides;
         end_now(clock);
         static_count_empty_increment(clock);
         break;
