@@ -81,9 +81,9 @@ double ground_step_excess(const Domain *d, double spacings)
   /* Measured factors over closed forms (docs/choosing.md) for vertical cuts:
    *   ordinary families            8 spacings           1.14
    *   control with full stiffness  16 spacings          1.29 or more
-   *   control that fades           8, 12, 16 spacings   1.06, 1.04, 1.034
+   *   control that fades           6, 12 spacings       1.04, 1.025 (with friction 1.03)
    * The first two excesses decrease with the square root of the number of spacings at best, and have one bound. */
-  const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.6;
+  const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.4;
   if (ground_step_slips_freely(d)) return fmin(freely_most, freely_spacings / spacings);
   return most * fmin(1, sqrt(few / spacings));
 }

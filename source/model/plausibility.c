@@ -3,6 +3,7 @@
 #include "constitutive/normal_lengths.h"
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
+#include "loading/support.h"
 #include "model/ground_step.h"
 #include <math.h>
 #include <stdlib.h>
@@ -683,13 +684,15 @@ static const char *ground_step_remedy(const breccia_model *model)
                ? ""
                : "; if its control fades, take 'horizon: 2.015 spacings': with a longer horizon zero-energy modes let "
                  "ground slide early, as a slope of clay at a factor of 1.05 instead of 1.50 at 3.015 spacings";
-  return ", or take 'influence: conical' and 'horizon: 2.015 spacings', with which control holds a twentieth of the "
+  return ", or take 'influence: conical' and 'horizon: 2.015 spacings', with which control holds 3 % of the "
          "strength on slip lines";
 }
 
-/** Adds how far a factor of safety comes out too high, where strengths are divided. */
+/** Adds how far a factor of safety comes out too high, where strengths are divided, and that images outside a held face
+ * may let it come out too low. */
 static void describe_step(const breccia_model *model, Text *text)
 {
+  const MarginList *margins = &model->domain.body.margins;
   bool any = false;
   for (int k = 0; k < model->loading.count; ++k) any |= model->loading.loads[k].type == &strength_reduction_load;
   const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
@@ -698,6 +701,14 @@ static void describe_step(const breccia_model *model, Text *text)
              "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "
              "out some %.0f %% too high; halve the spacing and compare%s\n",
              step, 100 * ground_step_excess(&model->domain, step), ground_step_remedy(model));
+  for (int k = 0; any && k < margins->count; ++k) {
+    if (margins->items[k].repeats || support_slides(&margins->items[k])) continue;
+    text_add(
+        text,
+        "  strength reduction: where ground slides along a face 'held: all' the factor may come out 25 %% too low; "
+        "add two layers to the body and hold them by 'displacement' instead of this support\n");
+    break;
+  }
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)
