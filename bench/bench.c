@@ -85,7 +85,7 @@ static const Case cases[] = {
      true,
      "2.015",
      {278, 1, 12, 5},
-     {278, 1, 12, 352}},
+     {278, 1, 12, 66}},
     {"micropolar",
      "elastic",
      "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.2",

@@ -108,8 +108,9 @@ static void *create(const FormulationParts *parts, Error *error)
                 .hidden = {-1, -1}};
   const bool keeps = points_keep_tensors(parts->points);
   if ((keeps || !create_hooke(h, parts->material_count, error)) && !hybrid_measure(h, parts, error) &&
-      (!h->listed || ((h->force = places_array(HYBRID_FORCE * h->listed, "forces of bonds", error)) &&
-                      (h->shown = places_array(LANES * h->particles->places, "displacements", error)))))
+      (!h->listed || h->moments ||
+       ((h->force = places_array(HYBRID_FORCE * h->listed, "forces of bonds", error)) &&
+        (h->shown = places_array(LANES * h->particles->places, "displacements", error)))))
     return h;
   destroy(h);
   return NULL;

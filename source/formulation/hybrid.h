@@ -21,6 +21,8 @@
 
 enum {
   HYBRID_FORCE = 3 * LANES,
+  HYBRID_AROUND = 512, /* places around a slice with listed rows, at most; rows with more store their vectors g */
+  HYBRID_RECORD = 8,
   HYBRID_NEAR = 256, /* lattice vectors from a place, itself among them; rows of lattices with more are listed */
   HYBRID_WIDTH =
       24 /* places of a lattice row that a slice's bonds lead to, at most; bonds of lattices that would need more are listed */
@@ -70,6 +72,29 @@ typedef struct HybridHooke {
   double lame, shear;
   double across; /* strain across the plane over the trace of that in it; 0 but in plane stress */
 } HybridHooke;
+
+/** What the vectors g of a listed row follow from (hybrid_moments.c); zeros: the row carries nothing. */
+typedef struct HybridFit {
+  double inverse[6]; /* M^-1 [1 / length^2 / volume] */
+  double middle[3];  /* mean position of the members less that of the first place around the slice [length] */
+  double volume;
+} HybridFit;
+
+/** Listed rows whose members count by their volumes alone. */
+typedef struct HybridMoments {
+  bool fits;            /* no slice has more than HYBRID_AROUND places around it */
+  int64_t *first;       /* [slices + 1] index of the first place around a slice */
+  int32_t *place;       /* [around] members of the listed rows of a slice, in ascending order */
+  int32_t *sum;         /* [around] index in `sums` */
+  uint16_t *index;      /* [members] members of each row by their index around the slice */
+  uint16_t *present;    /* [listed] number of members that no broken bond hides; they come first */
+  HybridFit *fit;       /* [listed] */
+  double *record;       /* [places][HYBRID_RECORD] position, volume, displacement */
+  double *sums;         /* [sums][QUAD] forces on the places around the slices of a stripe */
+  int64_t *stripe_sum;  /* [stripes + 1] index of the first sum of a stripe */
+  int64_t *reach_first; /* [places + 2] index in `reach` */
+  int32_t *reach;       /* [sums] sums of each place */
+} HybridMoments;
 
 /** Part of one material in a point whose members have two materials: a laminate of layers across a normal
  *  (docs/theory.md 5.8). With the strain E of the bond, the strain of the part is E + sym(a (x) n), where
@@ -122,9 +147,11 @@ struct Hybrid {
   int32_t (
       *reaching)[2]; /* [slices] the first stripe and the last that exert something on it; first > last: none does */
 
-  int64_t listed;    /* number of rows, those of single bonds first */
-  int64_t *row;      /* [listed] index of the row in the bond list */
-  int64_t *first;    /* [listed + 1] index of the first member of a row */
+  int64_t listed;         /* number of rows */
+  int64_t *listed_first;  /* [slices + 1] those of a slice: rows of lattice bonds, then of single ones */
+  HybridMoments *moments; /* NULL: rows store their vectors g, and forces and displacements are those below */
+  int64_t *row;           /* [listed] index of the row in the bond list */
+  int64_t *first;         /* [listed + 1] index of the first member of a row */
   int32_t *member;   /* places of the members of each row: owner of the bond, other end, common neighbours of both */
   double (*g)[3];    /* [members] vectors g; 0 for members that a broken bond hides */
   double (*area)[3]; /* [listed] section of the bond */
@@ -145,6 +172,13 @@ struct Hybrid {
   double (*tried)[3]; /* [most members of a listed row] for geometries that are tried out, by one thread */
   double (*tried_from)[3], *tried_weight; /* [largest number of members of a row] work arrays for vectors g; serial */
 };
+
+/** Index of a listed row of a slice among single bonds, or -1: it is one of a lattice bond. */
+static inline int64_t hybrid_single(const Hybrid *h, int64_t slice, int64_t number)
+{
+  const int64_t n = h->bonds->single_first[slice + 1] - (h->listed_first[slice + 1] - number);
+  return n < h->bonds->single_first[slice] ? -1 : n;
+}
 
 /** Where a row stands. */
 typedef struct HybridRow {
@@ -207,6 +241,27 @@ bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
 bool hybrid_rows_near(const Hybrid *hybrid, const HybridRows *rows, int32_t place);
 
 /* ---- between the two kinds of geometry ---- */
+
+/** Makes the moments of listed rows. `moments` stays NULL if some members count otherwise or are too many. */
+int hybrid_moments_create(Hybrid *h, Error *error);
+/** Makes the sums of forces by stripes. */
+int hybrid_moments_create_sums(Hybrid *h, Error *error);
+void hybrid_moments_destroy(Hybrid *h);
+size_t hybrid_moments_bytes(const Hybrid *h);
+/** Puts the members of a row behind its ends into ascending order. */
+void hybrid_moments_order(Hybrid *h, int64_t number);
+/** Sets the moments of a row.
+ *  @param[in] fit     inverse moment and mean position of the members less that of the owner; NULL: it carries nothing
+ *  @param[in] weight  [members] 0: hidden */
+void hybrid_moments_set(Hybrid *h, int64_t slice, int64_t number, const double fit[9], const double *weight);
+/** Computes the vectors g of the members of a row that are not hidden. @param[out] g  [present] */
+void hybrid_moments_vectors(const Hybrid *h, int64_t slice, int64_t number, double (*g)[3]);
+/** Phases of listed rows, as those of hybrid_sweep.c. Hooke's law: a whole slice; other laws: a batch of rows. */
+void hybrid_moments_show(const Hybrid *h, const Sweep *sweep);
+void hybrid_moments_clear(const Hybrid *h, const HybridStripe *stripe);
+void hybrid_moments_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice);
+void hybrid_moments_deform(const Hybrid *h, const Sweep *sweep);
+void hybrid_moments_respond(const Hybrid *h, const Sweep *sweep);
 
 /** Whether both ends of a bond are images beyond a face. A crack near the face has an image, too, and may leave too few images behind that one for a strain:
  *  such bonds carry nothing, and no particle of the body itself sees them. */

@@ -57,8 +57,9 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
 
 /** Computes the vectors g of the members of a listed row for the bonds that are intact now.
  *  @param[out] laminate  laminate of the row; NULL: the row is no laminate
+ *  @param[out] fit       NULL, or instead of g the inverse moment and the mean position less that of the owner
  *  @return false if no vectors exist; the point then carries nothing */
-static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate)
+static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate, double fit[9])
 {
   const Particles *p = h->particles;
   const int32_t *member = h->member + h->first[number];
@@ -86,6 +87,10 @@ static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminat
     for (int k = 0; k < 6; ++k) m[k] += weight[n] * apart[symmetric_row[k]] * apart[symmetric_column[k]];
     for (int k = 0; k < 3; ++k) g[n][k] = weight[n] * apart[k];
   }
+  if (fit) {
+    memcpy(fit + 6, middle, sizeof middle);
+    return hybrid_invert(h, m, fit);
+  }
   if (!hybrid_fit(h, count, m, xi, g)) {
     memset(g, 0, sizeof *g * (size_t)count);
     return false;
@@ -100,6 +105,17 @@ static HybridLaminate *laminate_of(Hybrid *h, int64_t number)
   return h->layer && h->layer[number] >= 0 ? &h->laminate[h->layer[number]] : NULL;
 }
 
+/** Computes what a listed row's strain follows from, for the bonds that are intact now. @return false: it carries nothing */
+static bool measure_row(Hybrid *h, int64_t slice, int64_t number)
+{
+  double fit[9];
+  if (!h->moments) return weigh(h, number, h->g + h->first[number], laminate_of(h, number), NULL);
+  if (h->volume[number] != 0) hybrid_moments_order(h, number);
+  const bool carries = weigh(h, number, h->tried, NULL, fit);
+  hybrid_moments_set(h, slice, number, carries ? fit : NULL, h->tried_weight);
+  return carries;
+}
+
 void hybrid_renew(void *formulation, int64_t slice)
 {
   Hybrid *h = formulation;
@@ -109,7 +125,7 @@ void hybrid_renew(void *formulation, int64_t slice)
       const bool to_others =
           is_foreign(h->foreign, h->member[h->first[number] + 1]); /* whose breaks are not told here */
       if (h->met[n].member < 2 || to_others)
-        h->idle[number] = !weigh(h, number, h->g + h->first[number], laminate_of(h, number));
+        h->idle[number] = !measure_row(h, h->member[h->first[number]] / SLICE, number);
     }
   hybrid_groups_renew(h, slice);
 }
@@ -121,11 +137,12 @@ bool hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
   hybrid_view_at(h, at, view);
   if (at->listed < 0) return at->geometry >= 0 && hybrid_group_weigh(h, at, view);
   view->g = (const double(*)[3])h->tried;
+  view->count = (int)(h->first[at->listed + 1] - h->first[at->listed]);
   if (view->laminate) {
     view->tried_laminate = *view->laminate;
     view->laminate = &view->tried_laminate;
   }
-  return weigh(h, at->listed, h->tried, view->laminate ? &view->tried_laminate : NULL);
+  return weigh(h, at->listed, h->tried, view->laminate ? &view->tried_laminate : NULL, NULL);
 }
 
 bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane)
@@ -203,6 +220,15 @@ static bool see_beyond(const Hybrid *h, int64_t slice, int lane, int32_t other)
   return false;
 }
 
+static int make_list_room(Hybrid *h, int64_t more, int64_t *room, Error *error)
+{
+  if (h->listed + more <= *room) return BRECCIA_OK;
+  int64_t *grown = memory_grown(h->row, (size_t)(*room = 2 * *room + more + 64), sizeof *grown);
+  if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");
+  h->row = grown;
+  return BRECCIA_OK;
+}
+
 /** Lists the bonds of a slice that lie along a lattice but have no place in the table. */
 static int list_slice(Hybrid *h, int64_t slice, int64_t *room, Error *error)
 {
@@ -215,11 +241,7 @@ static int list_slice(Hybrid *h, int64_t slice, int64_t *room, Error *error)
       const int64_t slot = f->first[slice] + l->owned[group];
       if (!(f->intact[slot] >> lane & 1) || (whole && !see_beyond(h, slice, lane, family_base(f, slice, slot) + lane)))
         continue;
-      if (h->listed == *room) {
-        int64_t *grown = memory_grown(h->row, (size_t)(*room = 2 * *room + 64), sizeof *grown);
-        if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");
-        h->row = grown;
-      }
+      if (make_list_room(h, 1, room, error)) return BRECCIA_FAILURE;
       h->row[h->listed] = l->first[slice] + SLICE * (group - l->owned_first[slice]) + lane;
       if (hybrid_group_list(h, group, lane, h->listed++))
         return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");
@@ -233,12 +255,14 @@ static int list_rows(Hybrid *h, Error *error)
   const int64_t slices = h->particles->slices;
   int64_t room = l->single_first[slices];
   h->row = memory_zeroed((size_t)room, sizeof *h->row, "members of bonds", error);
-  if (!h->row) return BRECCIA_FAILURE;
-  for (int64_t slice = 0; slice < slices; ++slice)
-    for (int64_t n = l->single_first[slice]; n < l->single_first[slice + 1]; ++n)
-      h->row[h->listed++] = l->first[slice + 1] - (l->single_first[slice + 1] - n);
-  for (int64_t slice = 0; slice < slices; ++slice)
-    if (list_slice(h, slice, &room, error)) return BRECCIA_FAILURE;
+  h->listed_first = memory_zeroed((size_t)slices + 1, sizeof *h->listed_first, "members of bonds", error);
+  if (!h->row || !h->listed_first) return BRECCIA_FAILURE;
+  for (int64_t slice = 0; slice < slices; ++slice) {
+    const int64_t single = l->single_first[slice + 1] - l->single_first[slice];
+    if (list_slice(h, slice, &room, error) || make_list_room(h, single, &room, error)) return BRECCIA_FAILURE;
+    for (int64_t n = single; n > 0; --n) h->row[h->listed++] = l->first[slice + 1] - n;
+    h->listed_first[slice + 1] = h->listed;
+  }
   return BRECCIA_OK;
 }
 
@@ -277,8 +301,10 @@ static int create_members(Hybrid *h, Error *error)
   if (!status) {
     const size_t members = (size_t)h->first[rows];
     h->member = memory_zeroed(members, sizeof *h->member, "members of bonds", error);
-    h->g = memory_zeroed(members, sizeof *h->g, "members of bonds", error);
-    status = h->member && h->g ? list_members(h, &n, true, error) : BRECCIA_FAILURE;
+    status = h->member ? list_members(h, &n, true, error) : BRECCIA_FAILURE;
+    if (!status) status = hybrid_moments_create(h, error);
+    if (!status && !h->moments && !(h->g = memory_zeroed(members, sizeof *h->g, "members of bonds", error)))
+      status = BRECCIA_FAILURE;
   }
   int64_t most = 0;
   for (size_t k = 0; k < rows && !status; ++k)
@@ -292,15 +318,17 @@ static int create_members(Hybrid *h, Error *error)
   return status;
 }
 
-/** Of each place the listed rows that it is a member of; where stress acts on ends only, and all breaks are told to both of them, of which it is an end. */
+/** Of each place the listed rows that it is a member of; where forces are not found by them, and all breaks are told to
+ *  both ends, of which it is an end. */
 static int create_meetings(Hybrid *h, Error *error)
 {
   const int64_t places = h->particles->places;
+  const bool all = h->foreign || (!h->pairwise && !h->moments);
   h->met_first = memory_zeroed((size_t)places + 2, sizeof *h->met_first, "members of bonds", error);
   if (!h->met_first) return BRECCIA_FAILURE;
   for (int turn = 0; turn < 2; ++turn) {
     for (int64_t number = 0; number < h->listed; ++number)
-      for (int n = 0; n < h->first[number + 1] - h->first[number] && (!h->pairwise || h->foreign || n < 2); ++n) {
+      for (int n = 0; n < h->first[number + 1] - h->first[number] && (all || n < 2); ++n) {
         const int32_t place = h->member[h->first[number] + n];
         if (turn)
           h->met[h->met_first[place + 1]++] = (struct HybridMet){(int32_t)number, n};
@@ -353,12 +381,11 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRo
   }
 }
 
-/** Returns the factor of section and volume of a listed point: the fraction of its material in a laminate, or twice its
- *  share of the bond (material_share_of_bond) if the other end has a point of its own, or 1. */
-static double part_of(const Hybrid *h, const HybridRow *at, int64_t number, const HybridLaminate *laminate)
+/** Returns the factor of section and volume of a listed point that is no laminate: twice its share of the bond
+ *  (material_share_of_bond) if the other end has a point of its own, or 1. */
+static double part_of(const Hybrid *h, const HybridRow *at, int64_t number)
 {
   int64_t rows[2];
-  if (laminate) return laminate->fraction;
   bond_list_rows(h->bonds, h->family, at->slice, at->slot, at->lane, rows);
   const int64_t own = h->row[number], other = rows[rows[0] == own];
   return other == own ? 1
@@ -386,8 +413,9 @@ static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
     hybrid_section_of(h, shape, &at, h->area[number], &h->volume[number]);
     if (hybrid_laminate_create(h, number, error)) return BRECCIA_FAILURE;
     HybridLaminate *laminate = laminate_of(h, number);
-    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number], laminate) &&
-        take_part(h, number, part_of(h, &at, number, laminate)))
+    const bool has_part = laminate || take_part(h, number, part_of(h, &at, number));
+    if (h->volume[number] != 0 && has_part && measure_row(h, at.slice, number) &&
+        (!laminate || take_part(h, number, laminate->fraction)))
       continue;
     h->idle[number] = 1; /* also where influence ends at the horizon */
     const int64_t owner = at.slice * SLICE + at.lane;
@@ -432,13 +460,16 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   h->contact = NULL;
   h->stripes = parts->stripe_count;
   if (!status) status = hybrid_stripes_create(h, parts->stripe, error);
+  if (!status && h->moments) status = hybrid_moments_create_sums(h, error);
   return status;
 }
 
 void hybrid_forget(Hybrid *h)
 {
   hybrid_lattices_destroy(h);
+  hybrid_moments_destroy(h);
   free(h->row);
+  free(h->listed_first);
   free(h->first);
   free(h->member);
   free(h->g);
@@ -461,12 +492,14 @@ size_t hybrid_bytes(const void *formulation)
 {
   const Hybrid *h = formulation;
   const size_t rows = (size_t)h->listed, places = (size_t)h->particles->places;
-  const size_t each =
-      sizeof *h->row + sizeof *h->first + sizeof *h->area + sizeof *h->volume + 1 + HYBRID_FORCE * sizeof *h->force;
-  const size_t listed = rows ? rows * each + (size_t)h->first[rows] * (sizeof *h->member + sizeof *h->g) +
-                                   places * (sizeof *h->met_first + LANES * sizeof *h->shown) +
-                                   (size_t)h->met_first[places] * sizeof *h->met
+  const size_t each = sizeof *h->row + sizeof *h->first + sizeof *h->area + sizeof *h->volume + 1;
+  const size_t listed = rows ? rows * each + (size_t)h->first[rows] * sizeof *h->member +
+                                   places * sizeof *h->met_first + (size_t)h->met_first[places] * sizeof *h->met
                              : 0;
+  const size_t vectors = !rows        ? 0
+                         : h->moments ? hybrid_moments_bytes(h)
+                                      : rows * HYBRID_FORCE * sizeof *h->force + places * LANES * sizeof *h->shown +
+                                            (size_t)h->first[rows] * sizeof *h->g;
   const size_t laminates = h->layer ? rows * sizeof *h->layer + (size_t)h->laminates * sizeof *h->laminate : 0;
-  return laminates + listed + hybrid_lattices_bytes(h);
+  return laminates + listed + vectors + hybrid_lattices_bytes(h);
 }

@@ -10,7 +10,7 @@ static HybridRow row_of(const Hybrid *h, int64_t slice, int64_t row)
   at.second = bond_list_bond(l, h->family, at.slice, row, &at.slot, &at.lane);
   const int64_t n = row - l->first[at.slice], owned = l->owned_first[at.slice + 1] - l->owned_first[at.slice];
   if (n >= SLICE * owned) {
-    at.listed = l->single_first[at.slice] + n - SLICE * owned;
+    at.listed = h->listed_first[at.slice + 1] - (l->first[at.slice + 1] - row);
     return at;
   }
   at.group = l->owned_first[at.slice] + n / SLICE;
@@ -33,12 +33,18 @@ HybridRow hybrid_row(const Hybrid *h, int64_t row)
   return row_of(h, slice, row);
 }
 
-static void view_listed(const Hybrid *h, int64_t number, HybridView *view)
+static void view_listed(const Hybrid *h, int64_t slice, int64_t number, HybridView *view)
 {
   view->idle = h->idle[number];
-  view->count = (int)(h->first[number + 1] - h->first[number]);
   view->member = h->member + h->first[number];
-  view->g = (const double(*)[3])(h->g + h->first[number]);
+  if (h->moments) {
+    view->count = h->moments->present[number];
+    view->g = (const double(*)[3])view->tried;
+    hybrid_moments_vectors(h, slice, number, view->tried);
+  } else {
+    view->count = (int)(h->first[number + 1] - h->first[number]);
+    view->g = (const double(*)[3])(h->g + h->first[number]);
+  }
   memcpy(view->area, h->area[number], sizeof view->area);
   view->volume = h->volume[number];
   view->laminate = hybrid_laminate(h, number);
@@ -51,7 +57,7 @@ void hybrid_view_at(const Hybrid *h, const HybridRow *at, HybridView *view)
   view->laminate = NULL;
   view->volume = 0;
   if (at->listed >= 0) {
-    view_listed(h, at->listed, view);
+    view_listed(h, at->slice, at->listed, view);
     return;
   }
   if (at->geometry < 0) return;

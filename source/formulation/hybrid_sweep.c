@@ -45,7 +45,7 @@ static int64_t listed_of(const SliceOf *s, int i)
 {
   if (i < SLICE * s->groups) return listed_at(s->h, s->first + i / SLICE, i % SLICE);
   const BondList *l = s->h->bonds;
-  return l->single_first[s->sweep->first + 1] - (l->first[s->sweep->first + 1] - (s->sweep->row + i));
+  return s->h->listed_first[s->sweep->first + 1] - (l->first[s->sweep->first + 1] - (s->sweep->row + i));
 }
 
 /** G of half of a slot. */
@@ -157,6 +157,10 @@ static void deform_rows(const Hybrid *h, const Sweep *sweep)
     deform_groups(&s, true);
   else
     deform_groups(&s, false);
+  if (h->moments) {
+    hybrid_moments_deform(h, &own);
+    return;
+  }
   for (int i = h->mixed_count ? 0 : SLICE * s.groups; i < own.rows && h->listed; ++i) {
     const int64_t number = listed_of(&s, i);
     if (number >= 0) deform_listed(h, &own, i, number);
@@ -166,7 +170,8 @@ static void deform_rows(const Hybrid *h, const Sweep *sweep)
 int64_t hybrid_show(void *formulation, const Sweep *sweep)
 {
   const Hybrid *h = formulation;
-  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE && h->listed; ++place)
+  if (h->moments) hybrid_moments_show(h, sweep);
+  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE && h->shown; ++place)
     for (int k = 0; k < 3; ++k) h->shown[LANES * place + k] = sweep->displacement[k][place];
   return -1;
 }
@@ -345,14 +350,15 @@ static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number
 /** All listed rows of a slice. */
 static void respond_slice_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice)
 {
-  const BondList *l = h->bonds;
-  for (int64_t group = l->owned_first[slice]; group < l->owned_first[slice + 1] && h->mixed_count; ++group)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      const int64_t number = listed_at(h, group, lane);
-      if (number >= 0) respond_by_hooke(h, sweep, number, h->material[slice]);
-    }
-  for (int64_t number = l->single_first[slice]; number < l->single_first[slice + 1]; ++number)
-    respond_by_hooke(h, sweep, number, l->single_material[number]);
+  if (h->moments) {
+    hybrid_moments_hooke(h, sweep, slice);
+    return;
+  }
+  const int64_t end = h->listed_first[slice + 1];
+  for (int64_t number = h->listed_first[slice]; number < end; ++number) {
+    const int64_t single = hybrid_single(h, slice, number);
+    respond_by_hooke(h, sweep, number, single < 0 ? h->material[slice] : h->bonds->single_material[single]);
+  }
 }
 
 int64_t hybrid_respond(void *formulation, const Sweep *sweep)
@@ -360,12 +366,20 @@ int64_t hybrid_respond(void *formulation, const Sweep *sweep)
   const Hybrid *h = formulation;
   if (h->hooke) {
     h->hooke_sweep(h, sweep);
+    if (h->moments && sweep->first == stripe_of(h, sweep->first)->first)
+      hybrid_moments_clear(h, stripe_of(h, sweep->first));
     for (int64_t slice = sweep->first; slice < sweep->last && h->listed; ++slice)
       respond_slice_by_hooke(h, sweep, slice);
     return -1;
   }
   respond_lattice(h, sweep);
   if (!h->listed) return -1;
+  if (h->moments) {
+    const HybridStripe *stripe = stripe_of(h, sweep->first);
+    if (sweep->row == stripe->row) hybrid_moments_clear(h, stripe);
+    hybrid_moments_respond(h, sweep);
+    return -1;
+  }
   SliceOf s;
   find_batch(h, sweep, &s);
   for (int i = h->mixed_count ? 0 : SLICE * s.groups; i < sweep->rows; ++i) {
@@ -381,6 +395,12 @@ int64_t hybrid_respond(void *formulation, const Sweep *sweep)
 LANES_INLINE Lanes listed_force(const Hybrid *h, int64_t place)
 {
   Lanes sum = lanes_set(0);
+  if (h->moments) {
+    const HybridMoments *m = h->moments;
+    for (int64_t n = m->reach_first[place]; n < m->reach_first[place + 1]; ++n)
+      sum += lanes_load(m->sums + QUAD * (int64_t)m->reach[n]);
+    return sum;
+  }
   for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
     const struct HybridMet *met = &h->met[n];
     const double *force = h->force + HYBRID_FORCE * (int64_t)met->number;
