@@ -62,6 +62,8 @@ static void destroy(void *formulation)
   Micropolar *m = formulation;
   if (!m) return;
   for (int k = 0; k < 4; ++k) places_free(&m->shown[k]);
+  places_free(&m->record);
+  places_free(&m->turns);
   for (int k = 0; k < 3; ++k) places_free(&m->spin[k]);
   micropolar_damage_destroy(m);
   free(m->constants);
@@ -90,6 +92,19 @@ static void fill_rows(Micropolar *m, int block)
   }
 }
 
+/** Makes what stored links read of places. */
+static int create_records(Micropolar *m, Error *error)
+{
+  const Particles *p = m->particles;
+  if (!m->family->stored_slots) return BRECCIA_OK;
+  m->record = places_array(LINK_RECORD * p->places, "links", error);
+  m->turns = places_array(QUAD * p->places, "links", error);
+  if (!m->record || !m->turns) return BRECCIA_FAILURE;
+  for (int64_t place = 0; place < p->places; ++place)
+    for (int k = 0; k < 4; ++k) m->record[LINK_RECORD * place + k] = k < 3 ? p->position[k][place] : p->volume[place];
+  return BRECCIA_OK;
+}
+
 static void *create(const FormulationParts *parts, Error *error)
 {
   static const MicropolarSpec standard = {.kinematics = KINEMATICS_COROTATIONAL, .torsion = 1};
@@ -114,6 +129,7 @@ static void *create(const FormulationParts *parts, Error *error)
   int failed = !m->constants || !m->rows;
   for (int k = 0; k < (parts->space == SPACE_3D ? 4 : 2); ++k)
     failed |= !(m->shown[k] = places_array(m->particles->places, "rotations", error));
+  if (!failed) failed = create_records(m, error);
   if (!failed && m->secant && m->foreign)
     failed = error_add(error, BRECCIA_USER_ERROR,
                        "kinematics: links of 'thesis' cannot stand beside other formulations; leave 'kinematics' out");
@@ -328,6 +344,7 @@ static size_t bytes(const void *formulation)
   size_t arrays = 0;
   for (int k = 0; k < 4; ++k) arrays += m->shown[k] != NULL;
   for (int k = 0; k < 3; ++k) arrays += m->spin[k] != NULL;
+  if (m->record) arrays += LINK_RECORD + QUAD;
   return arrays * sizeof(double) * (size_t)m->particles->places + (size_t)m->family->pattern_count * sizeof *m->rows +
          micropolar_damage_bytes(m);
 }
@@ -349,7 +366,10 @@ const FormulationType formulation_micropolar = {
     .destroy = destroy,
     .gyration = gyration,
     .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
-               {.run = find_damage, .reads = OF_DISPLACEMENTS, .writes = OF_STATES, .of_neighbours = OF_DISPLACEMENTS},
+               {.run = find_damage,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_STATES,
+                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN},
                {.run = resist,
                 .reads = OF_DISPLACEMENTS | OF_SHOWN | OF_STATES,
                 .writes = OF_FORCES,

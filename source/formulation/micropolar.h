@@ -15,7 +15,7 @@ typedef struct LinkStiffness {
   double axial, bending, twist;
 } LinkStiffness;
 
-enum { MOST_LENGTHS = 2 };
+enum { MOST_LENGTHS = 2, LINK_RECORD = 8 };
 
 /** Links of one block. */
 typedef struct LinkConstants {
@@ -93,6 +93,9 @@ struct Micropolar {
   LinkRow *rows;            /* [patterns] */
   LinkDamage *damage;       /* NULL: all links are elastic */
   double *spin[3];          /* [places] of changes in space */
+  /** [places][LINK_RECORD] position, volume and displacement, and [places][QUAD] what `shown` has, of each place side by
+   *  side, as stored links read them; NULL: there are none. */
+  double *record, *turns;
   double *shown[4]; /* [places] cosine and sine of the rotation in the plane, or the quaternion of a place in space */
   const MicropolarSweeps *sweeps;
 };

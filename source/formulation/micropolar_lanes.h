@@ -64,6 +64,7 @@ typedef struct LinkLanes {
   const int32_t *neighbours;  /* NULL, or where they do not */
   int half;
   unsigned intact;
+  Lanes volume;          /* of the other ends, where these do not */
   Lanes n[3], by_length; /* reference vector over its length, and 1 over that */
   Lanes e[3]; /* displacement of the other end less that of this one, over the length; 0 where the link is broken */
 } LinkLanes;
@@ -78,6 +79,17 @@ typedef struct StiffnessLanes {
 LANES_INLINE Lanes of_others(const LinkLanes *link, const double *from)
 {
   return link->neighbours ? lanes_gather(from, link->neighbours) : lanes_load(from + link->there);
+}
+
+/** Finds what is shown of the rotations of the other ends. @param[in] count  of numbers @param[out] turns  [QUAD] */
+LANES_INLINE void turns_of_others(const Micropolar *m, const LinkLanes *link, int count, Lanes *turns)
+{
+  if (link->neighbours) {
+    family_fetch_ahead(m->family, link->neighbours - m->family->neighbour, m->turns, QUAD);
+    lanes_gather_rows(m->turns, QUAD, link->neighbours, turns);
+    return;
+  }
+  for (int k = 0; k < count; ++k) turns[k] = lanes_load(m->shown[k] + link->there);
 }
 
 /** @param[in] at  displacements @param[in] u  of this end */
@@ -110,8 +122,8 @@ LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLan
 }
 
 /** @param[in] wanted  bits of links */
-LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int64_t place, int64_t slot, int half,
-                                    unsigned wanted, int dimensions, const Lanes *u)
+LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t slot, int half, unsigned wanted,
+                                    int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -120,12 +132,17 @@ LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int6
                  .half = half,
                  .neighbours = f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half,
                  .intact = wanted};
+  Lanes position[QUAD], moved[QUAD];
+  family_fetch_ahead(f, l.neighbours - f->neighbour, m->record, LINK_RECORD);
+  lanes_gather_rows(m->record, LINK_RECORD, l.neighbours, position);
+  lanes_gather_rows(m->record + QUAD, LINK_RECORD, l.neighbours, moved);
+  l.volume = position[3];
   const LaneMask intact = lanes_half(l.intact, half);
   Lanes square = lanes_set(0);
   for (int k = 0; k < dimensions; ++k) {
-    l.n[k] = lanes_where(intact, of_others(&l, p->position[k]) - lanes_load(p->position[k] + place));
+    l.n[k] = lanes_where(intact, position[k] - lanes_load(p->position[k] + place));
     square += l.n[k] * l.n[k];
-    l.e[k] = lanes_where(intact, of_others(&l, at[k]) - u[k]);
+    l.e[k] = lanes_where(intact, moved[k] - u[k]);
   }
   l.by_length = lanes_set(1) / lanes_choose(intact, lanes_root(square), lanes_set(1));
   for (int k = 0; k < dimensions; ++k) {
@@ -135,23 +152,46 @@ LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int6
   return l;
 }
 
+/** Finds constants of links whose ends are of several blocks or have constants by length, one by one. Out of line: vectors
+ *  of which lanes are read one by one go through memory, and with them the links that they belong to.
+ *  @param[out] stiffness  axial, bending, twist */
+static __attribute__((noinline)) void find_each_stiffness(const Micropolar *m, int64_t place, const int32_t *neighbours,
+                                                          const Lanes *by_length, Lanes stiffness[3])
+{
+  for (int k = 0; k < LANES; ++k) {
+    const Bond bond = {.neighbour = neighbours[k], .length = 1 / (*by_length)[k]};
+    const LinkStiffness each = micropolar_stiffness(m, place + k, &bond);
+    stiffness[0][k] = each.axial;
+    stiffness[1][k] = each.bending;
+    stiffness[2][k] = each.twist;
+  }
+}
+
 LANES_INLINE StiffnessLanes stored_stiffness(const Micropolar *m, const LinkLanes *l)
 {
   const Family *f = m->family;
-  Lanes weight = of_others(l, m->particles->volume);
+  Lanes weight = l->volume;
   if (f->scale) weight *= lanes_load(f->scale + (int64_t)f->base[l->slot] * SLICE + LANES * l->half);
   weight = lanes_intact(l->intact, l->half, weight);
   const LinkStiffness *any = &m->constants[0].any;
   Lanes axial = lanes_set(any->axial), bending = lanes_set(any->bending), twist = lanes_set(any->twist);
-  for (int k = 0; k < LANES && (m->body->block_count > 1 || m->constants[0].lengths); ++k) {
-    const Bond bond = {.neighbour = l->neighbours[k], .length = 1 / l->by_length[k]};
-    const LinkStiffness stiffness = micropolar_stiffness(m, l->place + k, &bond);
-    axial[k] = stiffness.axial;
-    bending[k] = stiffness.bending;
-    twist[k] = stiffness.twist;
+  if (m->body->block_count > 1 || m->constants[0].lengths) {
+    const Lanes by_length = l->by_length;
+    Lanes each[3];
+    find_each_stiffness(m, l->place, l->neighbours, &by_length, each);
+    axial = each[0];
+    bending = each[1];
+    twist = each[2];
   }
   const Lanes over_length = weight * l->by_length;
   return (StiffnessLanes){axial * weight, bending * over_length, twist * over_length, true, true};
+}
+
+/** Keeps what stored links read of a place beside its position. @param[in] at  displacements */
+LANES_INLINE void show_record(const Micropolar *m, double *const *at, int64_t place)
+{
+  for (int k = 0; k < 3; ++k) m->record[LINK_RECORD * place + QUAD + k] = at[k][place];
+  for (int k = 0; k < 4; ++k) m->turns[QUAD * place + k] = m->shown[k] ? m->shown[k][place] : 0;
 }
 
 /** Intact bits of a slot without its links to places of other formulations, which go one by one. */
@@ -171,7 +211,7 @@ LANES_INLINE LinkLanes links_of(const Micropolar *m, double *const *at, int64_t 
 {
   const int64_t place = slice * SLICE + LANES * half;
   if (slot < m->family->stored[slice]) return lattice_links(m, at, place, slot, half, dimensions, u);
-  return stored_links(m, at, place, slot, half, wanted, dimensions, u);
+  return stored_links(m, place, slot, half, wanted, dimensions, u);
 }
 
 LANES_INLINE StiffnessLanes stiffness_of_links(const Micropolar *m, const LinkLanes *l)

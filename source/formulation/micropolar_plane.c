@@ -12,17 +12,19 @@ LANES_INLINE AngleLanes angles_of(const Micropolar *m, const LinkLanes *l, const
                                   Lanes sine, Lanes bending)
 {
   const Lanes nx = l->n[0], ny = l->n[1], mx = chord->m[0], my = chord->m[1];
-  const Lanes far_cosine = of_others(l, m->shown[0]), far_sine = of_others(l, m->shown[1]);
+  Lanes far[QUAD];
+  turns_of_others(m, l, 2, far);
+  const Lanes far_cosine = far[0], far_sine = far[1];
   const Lanes ax = cosine * nx - sine * ny, ay = sine * nx + cosine * ny;
   const Lanes bx = far_cosine * nx - far_sine * ny, by = far_sine * nx + far_cosine * ny;
   const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
   const Lanes here_cosine = mx * ax + my * ay, other_cosine = mx * bx + my * by;
   Lanes factor = end_rotation(here * here, here_cosine, false).factor,
         other_factor = end_rotation(other * other, other_cosine, false).factor;
-  const LaneMask far = turned_far(bending, here_cosine, other_cosine);
-  if (lanes_any(far)) {
-    factor = lanes_choose(far, end_rotation(here * here, here_cosine, true).factor, factor);
-    other_factor = lanes_choose(far, end_rotation(other * other, other_cosine, true).factor, other_factor);
+  const LaneMask beyond = turned_far(bending, here_cosine, other_cosine);
+  if (lanes_any(beyond)) {
+    factor = lanes_choose(beyond, end_rotation(here * here, here_cosine, true).factor, factor);
+    other_factor = lanes_choose(beyond, end_rotation(other * other, other_cosine, true).factor, other_factor);
   }
   return (AngleLanes){here * factor, other * other_factor};
 }
@@ -66,7 +68,7 @@ static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
       add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, u, place, slot, half, own_bits(m, slice, slot), 2, own.u);
+      const LinkLanes l = stored_links(m, place, slot, half, own_bits(m, slice, slot), 2, own.u);
       add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
     lanes_store(sweep->internal[0] + place, own.force[0]);
@@ -168,6 +170,7 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
     lanes_store(m->shown[0] + place, cosine);
     lanes_store(m->shown[1] + place, sine);
   }
+  for (int64_t place = first * SLICE; place < last * SLICE && m->record; ++place) show_record(m, at, place);
 }
 
 const MicropolarSweeps LANES_NAMED(micropolar_plane) = {

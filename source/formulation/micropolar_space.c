@@ -25,12 +25,6 @@ LANES_INLINE void turn_lanes(const Lanes q[4], const Lanes n[3], Lanes a[3])
   }
 }
 
-/** Quaternions of the other ends. */
-LANES_INLINE void turns_of_others(const Micropolar *m, const LinkLanes *l, Lanes q[4])
-{
-  for (int k = 0; k < 4; ++k) q[k] = of_others(l, m->shown[k]);
-}
-
 /** Quaternion of the rotation from this end to the other, by the shorter way. */
 LANES_INLINE void twist_of(const Lanes a[4], const Lanes b[4], Lanes r[4])
 {
@@ -108,7 +102,7 @@ LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLan
   for (int k = 0; k < 3; ++k) own->force[k] += pull * chord.m[k];
   if (!stiffness.bends) return;
   Lanes q[4], across[3], cosine[2];
-  turns_of_others(m, l, q);
+  turns_of_others(m, l, 4, q);
   Spins s = spins_of(own, q, l->n, chord.m, &stiffness, false, cosine);
   const LaneMask far = turned_far(stiffness.bending, cosine[0], cosine[1]);
   if (lanes_any(far)) { /* copies, so that what is summed stays in registers */
@@ -160,7 +154,7 @@ static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
       add_link(m, &l, lattice_stiffness(m, &l), weak, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, u, place, slot, half, own_bits(m, slice, slot), 3, own.u);
+      const LinkLanes l = stored_links(m, place, slot, half, own_bits(m, slice, slot), 3, own.u);
       add_link(m, &l, stored_stiffness(m, &l), weak, &own);
     }
     for (int k = 0; k < 3; ++k) {
@@ -191,7 +185,7 @@ LANES_INLINE Lanes energy_of(const Micropolar *m, const LinkLanes *l, StiffnessL
   const Lanes energy = lanes_set(0.5) * stiffness.axial * chord.stretch * chord.stretch / l->by_length;
   if (!stiffness.bends) return energy;
   Lanes q[4], a[3], b[3], r[4];
-  turns_of_others(m, l, q);
+  turns_of_others(m, l, 4, q);
   find_rotation(own, l->n, chord.m, a);
   find_rotation(q, l->n, chord.m, b);
   twist_of(own, q, r);
@@ -338,7 +332,7 @@ LANES_INLINE void add_change(const Micropolar *m, double *const *v, const LinkLa
     own->force[k] += stiffness.axial * (grown * l->by_length * chord[k] + stretch * chord_change[k]);
   if (!stiffness.bends) return;
   Lanes q[4], spins[2][3], by_chord[2][3], by_spin[3];
-  turns_of_others(m, l, q);
+  turns_of_others(m, l, 4, q);
   for (int k = 0; k < 3; ++k) {
     spins[0][k] = own->spin[k];
     spins[1][k] = of_others(l, m->spin[k]);
@@ -424,6 +418,7 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
     turned_by(m->particles->orientation, at, place, q);
     for (int k = 0; k < 4; ++k) lanes_store(m->shown[k] + place, q[k]);
   }
+  for (int64_t place = first * SLICE; place < last * SLICE && m->record; ++place) show_record(m, at, place);
 }
 
 const MicropolarSweeps LANES_NAMED(micropolar_space) = {
