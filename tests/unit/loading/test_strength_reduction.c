@@ -200,7 +200,7 @@ static void ground_that_slides_has_lost_its_equilibrium(void **state)
     int status = 0;
     while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
     const StageRecord *record = &m->solver.records[m->solver.clock.stage];
-    const double factor = loading_strength_reduction(&m->loading, m->solver.clock.time);
+    const double factor = solver_strength_reduction(&m->solver);
     const Particles *p = m->domain.particles;
     double moved = 0;
     for (int64_t n = 0; n < p->count; ++n) moved = larger_of(moved, fabs(p->displacement[0][p->place_of[n]]));
