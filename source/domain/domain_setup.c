@@ -382,7 +382,8 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                     .material = d->material,
                                     .foreign = region->foreign,
                                     .stripe = region->stripe_slice,
-                                    .stripe_count = region->stripe_count};
+                                    .stripe_count = region->stripe_count,
+                                    .may_break = spec->failure != NULL};
     told = breccia_error_create();
     region->formulation = region->type->create(&parts, told);
     status = region->formulation ? BRECCIA_OK : BRECCIA_USER_ERROR;

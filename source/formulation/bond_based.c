@@ -65,6 +65,7 @@ static void destroy(void *formulation)
   free(b->by_length);
   free(b->range);
   free(b->surface);
+  free(b->surfaces);
   free(b->gaps);
   free(b->around);
   free(b->confining);
@@ -135,7 +136,7 @@ static void *create(const FormulationParts *parts, Error *error)
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
   if ((spec->surface_correction == SURFACE_BY_ENERGY && bond_correct_surface(b, error)) ||
-      bond_lateral_create(b, error) || bond_confinement_create(b, error)) {
+      bond_correct_interfaces(b, parts, error) || bond_lateral_create(b, error) || bond_confinement_create(b, error)) {
     destroy(b);
     return NULL;
   }
@@ -320,7 +321,8 @@ static FormerBonds former_bonds(const void *formulation)
 static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
-  return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
+  return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->particles->slices * sizeof *b->surface : 0) +
+         b->surface_count * sizeof *b->surfaces +
          (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
          (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0) + bond_lateral_bytes(b) +
          bond_confinement_bytes(b) +

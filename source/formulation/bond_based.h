@@ -1,6 +1,6 @@
 /* What the parts of bond-based peridynamics share: the table entry (bond_based.c), constants (bond_constants.c), sweeps over linear bonds
  * (bond_springs_sweep.c, what they read bond_springs.c) and over bonds with points (bond_points_sweep.c, bond_points.c), surfaces
- * (bond_surface.c). */
+ * (bond_surface.c) and interfaces (bond_interfaces.c). */
 #ifndef BRECCIA_FORMULATION_BOND_BASED_H
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
@@ -47,12 +47,16 @@ struct BondBased {
   bool strength_of_body; /* tensile strengths of the deck are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */
-  double *per_stress;      /* [blocks] c / E */
-  SpringRow *rows;         /* [patterns] */
-  double *numbers;         /* of these rows */
-  double *shown;           /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
-  float *by_length;        /* of linear bonds in stored slots (stretch_lengths); NULL if there are none */
-  float *surface;          /* [slots][8] surface correction; NULL: none */
+  double *per_stress; /* [blocks] c / E */
+  SpringRow *rows;    /* [patterns] */
+  double *numbers;    /* of these rows */
+  double *shown;      /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  float *by_length;   /* of linear bonds in stored slots (stretch_lengths); NULL if there are none */
+  /** [slices] factors on bonds by the surface correction and interfaces [slot from the slice's first one][8]; NULL: they
+   *  are 1. */
+  float **surface;
+  float *surfaces; /* [surface_count] which lie here */
+  size_t surface_count;
   double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   double *around; /* [places][12] strains of families (bond_lateral.c); NULL: no law reads the pressure across bonds */
@@ -78,10 +82,30 @@ void bond_note_gaps(BondBased *b, int64_t slice);
 /** Finds the surface correction (bond_surface.c). */
 int bond_correct_surface(BondBased *b, Error *error);
 
-/** Factor on the bonds of half a slot by the surface correction. */
-LANES_INLINE Lanes bond_surface(const BondBased *b, int64_t slot, int half)
+/** Multiplies the bonds near interfaces by their factors (bond_interfaces.c). */
+int bond_correct_interfaces(BondBased *b, const FormulationParts *parts, Error *error);
+
+/** Makes factors of 1 for the bonds of slices. Does nothing if there are factors.
+ *  @param[in] only  [slices] slices with an entry get factors; NULL: all do */
+int bond_make_factors(BondBased *b, float *const *only, Error *error);
+
+/** Returns the factors of the bonds of a slice, or NULL if they are 1. */
+LANES_INLINE const float *bond_factors(const BondBased *b, int64_t slice)
 {
-  return lanes_widen(b->surface + slot * SLICE + LANES * half);
+  return b->surface ? b->surface[slice] : NULL;
+}
+
+/** Factors of half a slot. @param[in] factors  of the slice */
+LANES_INLINE Lanes bond_surface(const BondBased *b, const float *factors, int64_t slice, int64_t slot, int half)
+{
+  return lanes_widen(factors + (slot - b->family->first[slice]) * SLICE + LANES * half);
+}
+
+/** Returns the factor of a bond. */
+static inline double bond_factor(const BondBased *b, int64_t slice, int64_t slot, int lane)
+{
+  const float *factors = bond_factors(b, slice);
+  return factors ? (double)factors[(slot - b->family->first[slice]) * SLICE + lane] : 1;
 }
 
 /** Makes the tables of linear bonds. */

@@ -19,7 +19,8 @@ LANES_INLINE Lanes room_of_lattice(const BondBased *b, const EnergyLimit *limit,
   const double constant =
       b->stiffness[b->particles->block[place / SLICE]] * limit->influence[family_pattern(f, slice, slot)];
   Lanes stiffness = lanes_set(constant / (4 * limit->half * row->length));
-  if (b->surface) stiffness *= bond_surface(b, slot, half);
+  const float *factors = bond_factors(b, slice);
+  if (factors) stiffness *= bond_surface(b, factors, slice, slot, half);
   const Lanes left = lanes_set(1) / lanes_root(stiffness) + lanes_set(row->length) - lanes_root(square);
   const LaneMask intact = lanes_half(f->intact[slot], half);
   return lanes_where(intact, left) + lanes_where(~intact, lanes_set(f->horizon));
@@ -36,7 +37,7 @@ static double room_of_stored(const BondBased *b, const EnergyLimit *limit, int64
     const double *u = b->particles->displacement[k], y = bond.xi[k] + (u[bond.neighbour] - u[place]);
     square += y * y;
   }
-  const double own = bond_own_share(b, &bond) * (b->surface ? (double)b->surface[slot * SLICE + lane] : 1) *
+  const double own = bond_own_share(b, &bond) * bond_factor(b, slice, slot, lane) *
                      limit->of->value(fmin(1, bond.length / f->horizon), bond.length) *
                      (b->stiffness[block[slice]] + b->stiffness[block[bond.neighbour / SLICE]]) / 2;
   return sqrt(2 * limit->half * bond.length / own) + bond.length - sqrt(square);

@@ -70,7 +70,8 @@ LANES_INLINE void add_change(const BondBased *b, const Sweep *sweep, int64_t sli
     tension = bond_list_load(b->bonds, b->family, b->tension, slice, slot, half);
     slope = bond_list_load(b->bonds, b->family, b->slope, slice, slot, half);
   }
-  if (b->surface) weight *= bond_surface(b, slot, half);
+  const float *factors = bond_factors(b, slice);
+  if (factors) weight *= bond_surface(b, factors, slice, slot, half);
   const Lanes across = weight * tension / length, turned = (weight * slope / h.length - across) * along / square;
   for (int k = 0; k < 3; ++k) force[k] += lanes_where(intact, turned * y[k] + across * h.change[k]);
 }
@@ -139,7 +140,7 @@ void bond_change(const BondBased *b, double *const *v, double *const *at, int64_
     square += y[k] * y[k];
     along += y[k] * change[k];
   }
-  const double length = sqrt(square), correction = b->surface ? (double)b->surface[slot * SLICE + lane] : 1;
+  const double length = sqrt(square), correction = bond_factor(b, slice, slot, lane);
   const int32_t *block = b->particles->block;
   double slope = (b->stiffness[block[slice]] + b->stiffness[block[bond->neighbour / SLICE]]) / 2,
          tension = slope * d / (bond->length * (length + bond->length));
@@ -215,8 +216,7 @@ int bond_point(const void *formulation, double *const *u, int64_t number, Operat
   for (int k = 0; k < 3; ++k) p->g[k] = y[k] / (length * bond.length);
   p->turn = 1 / (length * bond.length);
   point->components = 1;
-  point->volume = b->particles->volume[place] * bond.weight * bond.length;
-  if (b->surface) point->volume *= (double)b->surface[slot * SLICE + lane];
+  point->volume = b->particles->volume[place] * bond.weight * bond.length * bond_factor(b, slice, slot, lane);
   operator_close(point);
   return BRECCIA_OK;
 }

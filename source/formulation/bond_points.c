@@ -35,6 +35,5 @@ double bond_pull(const BondBased *b, double *const *u, int64_t slice, int64_t sl
   double tension, slope, length = 0;
   bond_tension(b, u, slice, slot, lane, bond, y, &tension, &slope);
   for (int k = 0; k < 3; ++k) length += y[k] * y[k];
-  if (b->surface) tension *= (double)b->surface[slot * SLICE + lane];
-  return tension / sqrt(length);
+  return tension * bond_factor(b, slice, slot, lane) / sqrt(length);
 }

@@ -37,6 +37,7 @@ LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_
   const int pattern = family_pattern(f, chunk->slice, slot);
   const Pattern *row = &f->patterns[pattern];
   const int64_t there = family_base(f, chunk->slice, slot), here = chunk->slice * SLICE;
+  const float *factors = bond_factors(b, chunk->slice);
   const Lanes twice[3] = {lanes_repeated(b->numbers + b->rows[pattern].xi[0]),
                           lanes_repeated(b->numbers + b->rows[pattern].xi[1]),
                           lanes_repeated(b->numbers + b->rows[pattern].xi[2])};
@@ -52,7 +53,7 @@ LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_
       lever = lanes_intact(f->intact[slot], half, lever);
     }
     d *= by_square;
-    if (b->surface) lever *= bond_surface(b, slot, half);
+    if (factors) lever *= bond_surface(b, factors, chunk->slice, slot, half);
     *within = lanes_within(*within, d, lanes_set(range_limit[RANGE_SERIES]));
     lanes_store(chunk->strain + at + LANES * half, stretch_of(d, series, &shortened));
     lanes_store(chunk->lever + at + LANES * half, lever * shortened);
@@ -88,12 +89,13 @@ LANES_INLINE void stretch_slot(const BondBased *b, const Chunk *chunk, const Str
                                unsigned owned, int at, bool series, StretchWalk walk[HALVES], LanesWithin *within)
 {
   const Family *f = b->family;
+  const float *factors = bond_factors(b, chunk->slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = walk[half].at;
     const StretchShown there = stretch_next(&walk[half]);
     Lanes lever = lanes_set(0.5 * chunk->per_stress) + there.u[3];
     if (f->scale) lever *= lanes_load(f->scale + place);
-    if (b->surface) lever *= bond_surface(b, slot, half);
+    if (factors) lever *= bond_surface(b, factors, chunk->slice, slot, half);
     lever = lanes_intact(f->intact[slot], half, lever);
     const Lanes strain = stretch_stored(&here[half], there.x, there.u, owned, half, &lever, series, within);
     lanes_store_some(chunk->strain + at, owned, half, strain);
@@ -145,7 +147,7 @@ LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, const 
     const double share = mixed ? 2 * bond_share(b, here[n] / SLICE, there[n] / SLICE) : 1;
     lever[n] = f->intact[slot] >> lane & 1 ? (mixed ? (second ? (2 - share) * other : share * own) : own + other) : 0;
     if (f->scale) lever[n] *= f->scale[place];
-    if (b->surface) lever[n] *= (double)b->surface[slot * SLICE + lane];
+    lever[n] *= bond_factor(b, chunk->slice, slot, lane);
   }
   lanes_gather_rows(b->shown, BOND_SHOWN, here, x[0]);
   lanes_gather_rows(b->shown, BOND_SHOWN, there, x[1]);

@@ -20,14 +20,15 @@ static void add_energies(const double xi[3], double length, double weight, doubl
   for (int a = 0; a < 3; ++a) energy[a] += weight * length * pow(xi[a] / length, 4);
 }
 
-static void family_energies(const Family *f, const float *surface, int64_t place, double energy[3])
+static void family_energies(const BondBased *b, bool corrected, int64_t place, double energy[3])
 {
+  const Family *f = b->family;
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(f, slice, slot, lane);
-    add_energies(bond.xi, bond.length, bond.weight * (surface ? surface[slot * SLICE + lane] : 1), energy);
+    add_energies(bond.xi, bond.length, bond.weight * (corrected ? bond_factor(b, slice, slot, lane) : 1), energy);
   }
 }
 
@@ -42,13 +43,13 @@ static void inner_energies(const BondBased *b, int block, double energy[3])
   const double least = cloud ? whole_family_volume(b->body, f, block, LEAST_FILLED) : 0;
   for (int64_t place = 0; cloud && place < b->particles->places; ++place)
     if (whole_family_at(f, block, place, least)) {
-      family_energies(f, NULL, place, energy);
+      family_energies(b, false, place, energy);
       ++count;
     }
   for (int a = 0; a < 3 && count; ++a) energy[a] /= (double)count;
 }
 
-static float bond_factor(const Bond *bond, double *const factor[3], int64_t place)
+static float factor_of_ends(const Bond *bond, double *const factor[3], int64_t place)
 {
   double sum = 0;
   for (int a = 0; a < 3; ++a) {
@@ -70,7 +71,7 @@ static void find_factors(void *context, int64_t place)
   const Correction *c = context;
   const BondBased *b = c->bonds;
   double own[3] = {0};
-  family_energies(b->family, c->turn ? b->surface : NULL, place, own);
+  family_energies(b, c->turn > 0, place, own);
   for (int a = 0; a < 3; ++a)
     c->factor[a][place] =
         (c->turn ? c->factor[a][place] : 1) * c->inner[3 * b->particles->block[place / SLICE] + a] / own[a];
@@ -92,11 +93,12 @@ static void correct_slice(void *context, int64_t slice)
 {
   const Correction *c = context;
   const Family *f = c->bonds->family;
+  float *factors = c->bonds->surface[slice];
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       Bond bond = family_bond(f, slice, slot, lane);
-      c->bonds->surface[slot * SLICE + lane] = bond_factor(&bond, c->factor, slice * SLICE + lane);
+      factors[(slot - f->first[slice]) * SLICE + lane] = factor_of_ends(&bond, c->factor, slice * SLICE + lane);
     }
 }
 
@@ -105,9 +107,8 @@ int bond_correct_surface(BondBased *b, Error *error)
   const Family *f = b->family;
   const Particles *p = b->particles;
   double *inner = memory_zeroed(3 * (size_t)b->body->block_count, sizeof(double), "surface correction", error);
-  b->surface = memory_zeroed((size_t)f->slots * SLICE, sizeof *b->surface, "surface correction", error);
   Correction c = {.bonds = b, .inner = inner};
-  int failed = !inner || !b->surface;
+  int failed = !inner || bond_make_factors(b, NULL, error);
   for (int a = 0; a < 3; ++a) failed |= !(c.factor[a] = places_array(p->places, "surface correction", error));
   for (int block = 0; block < b->body->block_count && !failed; ++block) {
     inner_energies(b, block, inner + 3 * block);

@@ -56,6 +56,7 @@ typedef struct FormulationParts {
   const uint8_t *foreign;
   const int64_t *stripe; /* [stripe_count + 1] slices at which stripes begin, as Phase says */
   int64_t stripe_count;
+  bool may_break; /* a criterion of the deck breaks bonds */
 } FormulationParts;
 
 static inline bool is_foreign(const uint8_t *foreign, int64_t place)

@@ -1,0 +1,119 @@
+/* Two elastic layers of bond-based and ordinary bodies: stiffness along their interface, across it and in shear, for any
+ * contrast of moduli, lattice and horizon, over that of Hooke's law. */
+#include "support.h"
+
+/** Two layers of six free rows each. */
+typedef struct Layers {
+  const char *formulation, *space, *lattice;
+  double spacings, contrast, poisson;
+} Layers;
+
+enum { ROWS = 6, HELD = 4, ALONG = 16, DEEP = 8 };
+
+typedef enum State { STATE_ALONG, STATE_ACROSS, STATE_SHEAR, STATES } State;
+static const char *const state_words[] = {"along", "across", "in shear"};
+
+static bool is_solid(const Layers *of)
+{
+  return !strcmp(of->space, "3-D");
+}
+
+static double rows_apart(const Layers *of)
+{
+  return strcmp(of->lattice, "hexagonal") ? 1 : sqrt(0.75);
+}
+
+/** Writes the corner of a box. @param[in] y  place across the interface */
+static char *corner_of(const Layers *of, double x, double y, double z)
+{
+  return is_solid(of) ? text_format("[%.17g, %.17g, %.17g]", x, z, y) : text_format("[%.17g, %.17g]", x, y);
+}
+
+/** Returns the loads of a state. */
+static char *loads_of(const Layers *of, State state)
+{
+  const bool solid = is_solid(of);
+  const char *up = solid ? "z" : "y";
+  if (state == STATE_ALONG)
+    return text_format("  - {on: {all: yes}, field: {displacement: ['1e-6 * x', free%s]}}\n"
+                       "  - {on: {nearest: [8, %s]}, displacement: [free, %s]}\n",
+                       solid ? ", free" : "", solid ? "4, 0" : "0", solid ? "0, 0" : "0");
+  return text_format("  - {on: {block: a, face: x-}, support: {held: periodic}}\n"
+                     "  - {on: {block: b, face: x-}, support: {held: periodic}}\n%s"
+                     "  - {on: {block: a, face: %s-, layers: %d}, displacement: [0, 0%s]}\n"
+                     "  - {on: {block: b, face: %s+, layers: %d}, displacement: [%s]}\n",
+                     solid ? "  - {on: {block: a, face: y-}, support: {held: periodic}}\n"
+                             "  - {on: {block: b, face: y-}, support: {held: periodic}}\n"
+                           : "",
+                     up, HELD, solid ? ", 0" : "", up, HELD,
+                     state == STATE_SHEAR ? (solid ? "1e-6, 0, 0" : "1e-6, 0") : (solid ? "0, 0, 1e-6" : "0, 1e-6"));
+}
+
+/** Returns the energy of a state of two layers, the lower one with a Young's modulus of 1e6. */
+static double energy_of(const Layers *of, State state)
+{
+  const double height = (ROWS + (state == STATE_ALONG ? 0 : HELD)) * rows_apart(of);
+  char *corner[4] = {corner_of(of, 0, -height, 0), corner_of(of, ALONG, 0, DEEP), corner_of(of, 0, 0, 0),
+                     corner_of(of, ALONG, height, DEEP)},
+       *loads = loads_of(of, state),
+       *law = strcmp(of->formulation, "ordinary") ? text_format("model: elastic-1d")
+                                                  : text_format("model: elastic, Poisson ratio: %.17g", of->poisson);
+  const char *thick = is_solid(of) ? "" : ", thickness: 1";
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials:\n"
+      "  a: {%s, density: 2, Young modulus: 1e6}\n  b: {%s, density: 2, Young modulus: %.17g}\n"
+      "body:\n  a: {material: a, lattice: %s, spacing: 1%s, shape: {box: {from: %s, to: %s}}}\n"
+      "  b: {material: b, lattice: %s, spacing: 1%s, shape: {box: {from: %s, to: %s}}}\n"
+      "peridynamics: {space: %s, formulation: %s, horizon: %g spacings}\nloads:\n%ssolve: {static: {increments: 1}}\n",
+      law, law, 1e6 / of->contrast, of->lattice, thick, corner[0], corner[1], of->lattice, thick, corner[2], corner[3],
+      of->space, of->formulation, of->spacings, loads);
+  step_surely(m, 1);
+  const double energy = solver_energy(&m->solver).stored;
+  breccia_model_destroy(&m);
+  for (int k = 0; k < 4; ++k) free(corner[k]);
+  free(loads);
+  free(law);
+  return energy;
+}
+
+/** Returns the energy of two layers over that by the energy of one material and Hooke's law. */
+static double stiffness_of(const Layers *of, State state)
+{
+  Layers one = *of;
+  one.contrast = 1;
+  const double share = state == STATE_ALONG ? (1 + 1 / of->contrast) / 2 : 2 / (1 + of->contrast);
+  return energy_of(of, state) / (share * energy_of(&one, state));
+}
+
+static void layers_are_as_stiff_as_hooke_says(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *space, *lattice;
+    double spacings, poisson;
+  } bodies[] = {
+      {"plane stress", "square", 3.015, 1. / 3},
+      {"plane stress", "square", 2.015, 0.2},
+      {"plane strain", "square", 3.015, 0.3},
+      {"3-D", "cubic", 2.015, 0.25},
+      {"3-D", "cubic", 3.015, 0.2},
+  };
+  static const char *const formulations[] = {"bond-based", "ordinary"};
+  static const double contrasts[] = {2, 10, 100, 1000};
+  for (int f = 0; f < 2; ++f)
+    for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b)
+      for (int c = 0; c < 4; ++c)
+        for (State s = 0; s < STATES; ++s) {
+          const Layers of = {formulations[f],    bodies[b].space, bodies[b].lattice,
+                             bodies[b].spacings, contrasts[c],    bodies[b].poisson};
+          if (is_solid(&of) && (c == 0 || c == 2)) continue;
+          printf("%s %s %s %g nu %g contrast %g %s: %.4f\n", of.formulation, of.space, of.lattice, of.spacings,
+                 of.poisson, of.contrast, state_words[s], stiffness_of(&of, s));
+        }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(layers_are_as_stiff_as_hooke_says)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
