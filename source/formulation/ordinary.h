@@ -53,6 +53,10 @@ typedef struct Flow {
 
 typedef struct Ordinary Ordinary;
 
+/** Factors of a bond near an interface: on the dilatation that its own end and the other end find in it, and on its
+ *  stiffness b. */
+enum { ORDINARY_OWN, ORDINARY_OTHER, ORDINARY_SPRING, ORDINARY_FACTORS };
+
 /** Sweeps over bonds (ordinary_sweep.c): dilatations; what families make of them; forces. */
 typedef struct OrdinarySweeps {
   int64_t (*dilate)(const Ordinary *o, const Sweep *sweep);
@@ -76,6 +80,11 @@ struct Ordinary {
                                    bond; NULL: they are 1 */
   float *surfaces; /* [surface_count] which lie here */
   size_t surface_count;
+  /** [slices] factors near interfaces [slot from the slice's first one][ORDINARY_FACTORS][8]; NULL entries: 1; NULL: all
+   *  are 1 (ordinary_interfaces.c). */
+  float **unlike;
+  float *unlikes; /* [unlike_count] which lie here */
+  size_t unlike_count;
   int32_t *incomplete; /* [places] index into `fourth`; negative: none; NULL: all families are complete */
   /** [incomplete_count][ordinary_fourth_count] mean products n n n n of the incomplete families as they began, weighted
    *  by w |xi|^2 with the factors of bonds [-]. */
@@ -110,6 +119,19 @@ static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot,
   if (o->surface && o->surface[slice])
     bond.weight *= (double)o->surface[slice][(slot - o->family->first[slice]) * SLICE + lane];
   return bond;
+}
+
+/** Returns the place of a factor of a bond near an interface. @param[in] unlike  factors of the slice */
+static inline float *ordinary_factor_at(const Ordinary *o, float *unlike, int64_t slice, int64_t slot, int factor)
+{
+  return unlike + ((slot - o->family->first[slice]) * ORDINARY_FACTORS + factor) * SLICE;
+}
+
+/** Returns a factor of a bond near an interface. @param[in] at  the bond's place in the arrays of slots */
+static inline double ordinary_factor(const Ordinary *o, int64_t place, int64_t at, int factor)
+{
+  float *unlike = o->unlike ? o->unlike[place / SLICE] : NULL;
+  return unlike ? (double)ordinary_factor_at(o, unlike, place / SLICE, at / SLICE, factor)[at % SLICE] : 1;
 }
 
 /** Free strain of a place along the plane or in space, with which a family is free of stress. */
@@ -166,6 +188,8 @@ Across ordinary_coupling(Space space, const Material *material);
 /** Adds to the factors of the patterns of a block what makes its lattice isotropic; leaves them where that would all but take bonds away
  *  (ordinary_weights.c). */
 void ordinary_balance(const Ordinary *o, int block);
+/** Finds the factors of bonds near interfaces; `inverse` must be known (ordinary_interfaces.c). */
+int ordinary_find_interfaces(Ordinary *o, const FormulationParts *parts, Error *error);
 /** Finds the factors of bonds of families that are not complete (ordinary_families.c). */
 int ordinary_balance_families(Ordinary *o, Error *error);
 /** Returns the number of products n_x^i n_y^j n_z^k with i + j + k = 4. */

@@ -30,9 +30,13 @@ static double shift_of(const Ordinary *o, int64_t slot, int lane, int state)
 /** With the scalar force state over influence a |xi| + b (e - s), its change in a linearised step is da |xi| + b f de + b x df / f. */
 OrdinaryEnd ordinary_end(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, const OrdinaryStretch *s)
 {
-  OrdinaryEnd end = {.tension = o->base[place] * bond->length + o->shear[place] * s->elongation,
-                     .stiffness = o->shear[place],
-                     .turned = o->change ? o->change[place] * bond->length : 0};
+  const double own = ordinary_factor(o, place, at, ORDINARY_OWN),
+               spring = ordinary_factor(o, place, at, ORDINARY_SPRING),
+               freely = o->shear[place] * ordinary_free(o, place); /* of which the base holds `own` */
+  OrdinaryEnd end = {.tension = (own * o->base[place] + (own - spring) * freely) * bond->length +
+                                spring * o->shear[place] * s->elongation,
+                     .stiffness = spring * o->shear[place],
+                     .turned = o->change ? own * o->change[place] * bond->length : 0};
   if (!o->flow) return end;
   const double shift = o->flow->shift[1][at];
   end.tension -= o->shear[place] * shift;
@@ -77,32 +81,35 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(p->displacement, place, &bond);
+    const double own = ordinary_factor(o, place, slot * SLICE + lane, ORDINARY_OWN),
+                 spring = ordinary_factor(o, place, slot * SLICE + lane, ORDINARY_SPRING);
     double grown = 0;
     for (int k = 0; k < 3; ++k)
       grown += time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]) * s.y[k] / s.length;
     const double from_free = s.elongation - ordinary_free(o, place) * bond.length;
-    volume += bond.weight * bond.length * from_free;
+    volume += own * bond.weight * bond.length * from_free;
     const double shift = shift_of(o, slot, lane, 1), elastic = from_free - shift;
-    square += bond.weight * (elastic * elastic + (1 / part - 1) * shift * shift);
+    square += spring * bond.weight * (elastic * elastic + (1 / part - 1) * shift * shift);
     flowed += bond.weight * (from_free - shift / part) * (shift - shift_of(o, slot, lane, 0));
-    volume_moved += bond.weight * bond.length * grown;
-    square_moved += bond.weight * elastic * grown;
+    volume_moved += own * bond.weight * bond.length * grown;
+    square_moved += spring * bond.weight * elastic * grown;
   }
-  const double inverse = o->inverse[place], own = p->volume[place];
+  const double inverse = o->inverse[place], own_volume = p->volume[place];
   const double base = o->volumetric[place] * inverse, shear = o->shear[place];
   const Material *m = ordinary_material(o, place);
-  energy->stored = 0.5 * own * (base * volume * volume + shear * square);
-  energy->received = energy->stored - 0.5 * own * (base * volume * volume_moved + shear * square_moved);
+  energy->stored = 0.5 * own_volume * (base * volume * volume + shear * square);
+  energy->received = energy->stored - 0.5 * own_volume * (base * volume * volume_moved + shear * square_moved);
   if (o->flow) { /* and what p stores: with - pull theta p + own p^2 / 2 what a relaxing share keeps to itself */
     const Across c = ordinary_coupling(o->space, m);
-    const double share = own * o->share[place], across = o->flow->across[1][place], theta = inverse * volume,
+    const double share = own_volume * o->share[place], across = o->flow->across[1][place], theta = inverse * volume,
                  stiffness = c.own + (o->space == SPACE_3D ? 0 : 3 * m->shear * (1 / part - 1));
     const double stored = share * across * (0.5 * stiffness * across - c.pull * theta);
     energy->stored += stored;
     energy->received += stored + 0.5 * share * c.pull * across * inverse * volume_moved;
     energy->received += share * (c.pull * theta - stiffness * across) * (across - o->flow->across[0][place]);
   }
-  energy->received += own * shear * flowed; /* what has been dissipated in the step is not what the break takes */
+  energy->received +=
+      own_volume * shear * flowed; /* what has been dissipated in the step is not what the break takes */
 }
 
 void ordinary_gradient(const void *formulation, int64_t place, double f[9])

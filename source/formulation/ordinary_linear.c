@@ -10,8 +10,9 @@
 typedef struct HalfSlot {
   Lanes n[3], change[3], along, by_length, reference, weight, elongation; /* by_length: 1 / |y| */
   LaneMask intact;
-  int64_t own, there;    /* in the arrays of slots; first neighbour of lattice slots */
-  const int32_t *stored; /* neighbours of stored ones, or NULL */
+  Lanes factor[ORDINARY_FACTORS]; /* near interfaces; else 1 */
+  int64_t own, there;             /* in the arrays of slots; first neighbour of lattice slots */
+  const int32_t *stored;          /* neighbours of stored ones, or NULL */
 } HalfSlot;
 
 LANES_INLINE Lanes at_neighbours(const HalfSlot *h, const double *values)
@@ -47,6 +48,9 @@ LANES_INLINE HalfSlot half_slot(const Ordinary *o, const Sweep *sweep, int64_t s
   if (o->surface && o->surface[slice])
     h.weight *= lanes_widen(o->surface[slice] + (slot - f->first[slice]) * SLICE + LANES * half);
   h.weight = lanes_where(h.intact, h.weight);
+  float *unlike = o->unlike ? o->unlike[slice] : NULL;
+  for (int k = 0; k < ORDINARY_FACTORS; ++k)
+    h.factor[k] = unlike ? lanes_widen(ordinary_factor_at(o, unlike, slice, slot, k) + LANES * half) : lanes_set(1);
   for (int k = 0; k < 3; ++k) {
     const Lanes eta = at_neighbours(&h, at[k]) - lanes_load(at[k] + here);
     y[k] = xi[k] + eta;
@@ -89,7 +93,7 @@ static void change_dilatation(const Ordinary *o, const Sweep *sweep)
       Lanes sum = {0}, amount = {0}, evenly = {0};
       for (int64_t slot = o->family->first[slice]; slot < o->family->first[slice + 1]; ++slot) {
         const HalfSlot h = half_slot(o, sweep, slice, slot, half);
-        sum += h.weight * h.reference * h.along;
+        sum += h.factor[ORDINARY_OWN] * h.weight * h.reference * h.along;
         if (!o->flow) continue;
         const Lanes kept = kept_by(o, &h, lanes_load(o->dilatation + here),
                                    lanes_load(o->flow->shift[1] + h.own)); /* of its own end */
@@ -152,21 +156,30 @@ typedef struct BothEnds {
 LANES_INLINE BothEnds both_ends(const Ordinary *o, const HalfSlot *h, int64_t here)
 {
   const Lanes own = lanes_load(o->shear + here), other = at_neighbours(h, o->shear);
-  BothEnds ends = {.tension = (lanes_load(o->base + here) + at_neighbours(h, o->base)) * h->reference +
-                              (own + other) * h->elongation,
-                   .stiffness = own + other,
-                   .turned = (lanes_load(o->change + here) + at_neighbours(h, o->change)) * h->reference};
+  const Lanes *factor = h->factor, spring = factor[ORDINARY_SPRING];
+  BothEnds ends = {.tension = (factor[ORDINARY_OWN] * lanes_load(o->base + here) +
+                               factor[ORDINARY_OTHER] * at_neighbours(h, o->base)) *
+                                  h->reference +
+                              spring * (own + other) * h->elongation,
+                   .stiffness = spring * (own + other),
+                   .turned = (factor[ORDINARY_OWN] * lanes_load(o->change + here) +
+                              factor[ORDINARY_OTHER] * at_neighbours(h, o->change)) *
+                             h->reference};
+  if (o->unlike && o->particles->free_strain) /* what the bases hold of it */
+    ends.tension += ((factor[ORDINARY_OWN] - spring) * own * lanes_load(o->particles->free_strain + here) +
+                     (factor[ORDINARY_OTHER] - spring) * other * at_neighbours(h, o->particles->free_strain)) *
+                    h->reference;
   if (!o->flow) return ends;
   const Flow *flow = o->flow;
   const Lanes shift = lanes_load(flow->shift[1] + h->own), back = shifts_there(o, h);
-  Lanes factor = {0}, factor_there = {0};
+  Lanes kept = {0}, kept_there = {0};
   for (int lane = 0; lane < LANES; ++lane) {
     if (!h->intact[lane]) continue;
-    factor[lane] = flow->returned[here + lane].factor;
-    factor_there[lane] = flow->returned[h->stored ? h->stored[lane] : h->there + lane].factor;
+    kept[lane] = flow->returned[here + lane].factor;
+    kept_there[lane] = flow->returned[h->stored ? h->stored[lane] : h->there + lane].factor;
   }
   ends.tension -= own * shift + other * back;
-  ends.stiffness = own * factor + other * factor_there;
+  ends.stiffness = spring * (own * kept + other * kept_there);
   ends.turned += lanes_load(flow->amount + here) * kept_by(o, h, lanes_load(o->dilatation + here), shift) +
                  at_neighbours(h, flow->amount) * kept_by(o, h, at_neighbours(h, o->dilatation), back);
   return ends;
@@ -217,8 +230,10 @@ static int add_neighbour(const Ordinary *o, double *const *u, int64_t place, int
   OperatorPlace *p = operator_add(point, bond->neighbour, error);
   if (!p) return BRECCIA_FAILURE;
   const OrdinaryStretch s = ordinary_stretch(u, place, bond);
-  const double share = o->inverse[place] * bond->weight * bond->length, shift = o->flow ? o->flow->shift[1][at] : 0,
-               spring = o->particles->volume[place] * o->shear[place] * bond->weight,
+  const double share = ordinary_factor(o, place, at, ORDINARY_OWN) * o->inverse[place] * bond->weight * bond->length,
+               shift = o->flow ? o->flow->shift[1][at] : 0,
+               spring = ordinary_factor(o, place, at, ORDINARY_SPRING) * o->particles->volume[place] * o->shear[place] *
+                        bond->weight,
                along = spring * (o->flow ? o->flow->returned[place].factor : 1),
                across = spring * (s.elongation - shift) / s.length,
                kept = bond->weight * (ordinary_deviatoric(o, place, bond, &s) - shift);

@@ -94,7 +94,7 @@ static int create_rows(Ordinary *o, Error *error)
   return BRECCIA_OK;
 }
 
-/** m of the bonds that are left. */
+/** m of the bonds that are left, as the dilatation counts them. */
 static double moment_of(const Ordinary *o, int64_t place)
 {
   const Family *f = o->family;
@@ -103,7 +103,8 @@ static double moment_of(const Ordinary *o, int64_t place)
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, (int)(place % SLICE));
-    moment += bond.weight * bond.length * bond.length;
+    moment +=
+        ordinary_factor(o, place, slot * SLICE + place % SLICE, ORDINARY_OWN) * bond.weight * bond.length * bond.length;
   }
   return moment;
 }
@@ -155,6 +156,8 @@ void ordinary_destroy(void *formulation)
   free(o->factor);
   free(o->surface);
   free(o->surfaces);
+  free(o->unlike);
+  free(o->unlikes);
   free(o->incomplete);
   free(o->fourth);
   free(o->dilating);
@@ -222,6 +225,10 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
     return NULL;
   }
   team_each(o->particles->places, weigh, o);
+  if (ordinary_find_interfaces(o, parts, error)) {
+    ordinary_destroy(o);
+    return NULL;
+  }
   for (int64_t slice = 0; slice < o->particles->slices; ++slice)
     if (!is_foreign(o->foreign, slice * SLICE)) ordinary_renew(o, slice);
   return o;
@@ -408,6 +415,7 @@ size_t ordinary_bytes(const void *formulation)
          (o->by_length ? (size_t)o->family->stored_slots * SLICE * sizeof *o->by_length : 0) +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
          (o->surface ? (size_t)o->particles->slices * sizeof *o->surface : 0) + o->surface_count * sizeof *o->surfaces +
+         (o->unlike ? (size_t)o->particles->slices * sizeof *o->unlike : 0) + o->unlike_count * sizeof *o->unlikes +
          (o->incomplete ? (size_t)o->particles->places * sizeof *o->incomplete : 0) +
          (size_t)(o->incomplete_count * ordinary_fourth_count(o->dimensions)) * sizeof *o->fourth +
          ordinary_flow_bytes(o);

@@ -26,11 +26,35 @@ LANES_INLINE Lanes series_of(const double terms[STRETCH_TERMS], Lanes d, Lanes s
   return d * (pair[0] + square * (pair[1] + square * pair[2]));
 }
 
-/** Multiplies half a slot by the factors of the bonds of a slice; NULL: they are 1. */
-LANES_INLINE Lanes by_surface(const Ordinary *o, const float *surface, int64_t slice, int64_t slot, int half,
-                              Lanes lanes)
+/** Factors of the bonds of a slice; NULL: they are 1. */
+typedef struct Factors {
+  const float *surface;
+  float *unlike;
+} Factors;
+
+static Factors factors_of(const Ordinary *o, int64_t slice)
 {
-  return surface ? lanes * lanes_widen(surface + (slot - o->family->first[slice]) * SLICE + LANES * half) : lanes;
+  return (Factors){o->surface ? o->surface[slice] : NULL, o->unlike ? o->unlike[slice] : NULL};
+}
+
+/** Multiplies half a slot by the factors of the bonds of a slice; NULL: they are 1. */
+LANES_INLINE Lanes by_surface(const Ordinary *o, Factors factors, int64_t slice, int64_t slot, int half, Lanes lanes)
+{
+  return factors.surface
+             ? lanes * lanes_widen(factors.surface + (slot - o->family->first[slice]) * SLICE + LANES * half)
+             : lanes;
+}
+
+/** A factor near interfaces of half a slot. */
+LANES_INLINE Lanes unlike_factor(const Ordinary *o, Factors factors, int64_t slice, int64_t slot, int half, int factor)
+{
+  return lanes_widen(ordinary_factor_at(o, factors.unlike, slice, slot, factor) + LANES * half);
+}
+
+/** Multiplies what half a slot adds to the dilatation of its own end. */
+LANES_INLINE Lanes by_own(const Ordinary *o, Factors factors, int64_t slice, int64_t slot, int half, Lanes lanes)
+{
+  return factors.unlike ? lanes * unlike_factor(o, factors, slice, slot, half, ORDINARY_OWN) : lanes;
 }
 
 /* ---- dilatation ---- */
@@ -48,7 +72,7 @@ LANES_INLINE Lanes stretch_of(Lanes d, StretchRange range)
 }
 
 LANES_INLINE void dilate_lattice(const Ordinary *o, double *const *u, int64_t slice, int64_t slot, int half, bool gaps,
-                                 const float *surface, StretchRange range, const Lanes own[3], Dilated *sum)
+                                 Factors factors, StretchRange range, const Lanes own[3], Dilated *sum)
 {
   const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryDilating *row = &o->dilating[pattern];
@@ -56,31 +80,33 @@ LANES_INLINE void dilate_lattice(const Ordinary *o, double *const *u, int64_t sl
   if (gaps) d = lanes_intact(o->family->intact[slot], half, d);
   if (range == RANGE_SERIES) {
     const Lanes square = d * d;
-    sum->sum += by_surface(o, surface, slice, slot, half, series_of(row->series, d, square));
+    sum->sum += by_own(o, factors, slice, slot, half,
+                       by_surface(o, factors, slice, slot, half, series_of(row->series, d, square)));
     sum->within = lanes_within(sum->within, d, lanes_set(row->limit));
     return;
   }
   const Pattern *bond = &o->family->patterns[pattern];
   d *= -lanes_set(bond->by_square);
   sum->largest = lanes_greatest(sum->largest, d * d);
-  sum->sum += by_surface(o, surface, slice, slot, half,
-                         lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range));
+  sum->sum += by_own(o, factors, slice, slot, half,
+                     by_surface(o, factors, slice, slot, half,
+                                lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range)));
 }
 
-LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
-                                const float *surface, StretchRange range, const StretchHere *here, StretchWalk *walk,
-                                Dilated *sum)
+LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps, Factors factors,
+                                StretchRange range, const StretchHere *here, StretchWalk *walk, Dilated *sum)
 {
   const int64_t at = walk->at;
   const StretchShown there = stretch_next(walk);
   const StretchEnds ends = stretch_ends(o->family, o->by_length, &there, at, o->family->intact[slot], half, gaps, here);
   sum->largest = lanes_greatest(sum->largest, ends.d * ends.d);
-  sum->sum += by_surface(o, surface, slice, slot, half, ends.weight) * stretch_of(ends.d, range) * ends.square;
+  sum->sum += by_own(o, factors, slice, slot, half, by_surface(o, factors, slice, slot, half, ends.weight)) *
+              stretch_of(ends.d, range) * ends.square;
 }
 
 /** Sums of a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE StretchRange dilate_slice(const Ordinary *o, double *const *u, int64_t slice, bool gaps,
-                                       const float *surface, StretchRange range)
+LANES_INLINE StretchRange dilate_slice(const Ordinary *o, double *const *u, int64_t slice, bool gaps, Factors factors,
+                                       StretchRange range)
 {
   const Family *f = o->family;
   Dilated sum[HALVES];
@@ -92,12 +118,12 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, double *const *u, int6
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      dilate_lattice(o, u, slice, slot, half, gaps, surface, range, own[half], &sum[half]);
+      dilate_lattice(o, u, slice, slot, half, gaps, factors, range, own[half], &sum[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere at = stretch_here(o->particles, u, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      dilate_stored(o, slice, slot, half, gaps, surface, range, &at, &walk, &sum[half]);
+      dilate_stored(o, slice, slot, half, gaps, factors, range, &at, &walk, &sum[half]);
   }
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
@@ -108,22 +134,24 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, double *const *u, int6
   return stretch_range_after(range, most);
 }
 
-LANES_INLINE StretchRange dilate_way(const Ordinary *o, double *const *u, int64_t slice, bool gaps,
-                                     const float *surface, StretchRange range)
+LANES_INLINE StretchRange dilate_way(const Ordinary *o, double *const *u, int64_t slice, bool gaps, Factors factors,
+                                     StretchRange range)
 {
-  if (range == RANGE_SERIES) return dilate_slice(o, u, slice, gaps, surface, RANGE_SERIES);
-  if (range == RANGE_NEWTON) return dilate_slice(o, u, slice, gaps, surface, RANGE_NEWTON);
-  return dilate_slice(o, u, slice, gaps, surface, RANGE_ANY);
+  if (range == RANGE_SERIES) return dilate_slice(o, u, slice, gaps, factors, RANGE_SERIES);
+  if (range == RANGE_NEWTON) return dilate_slice(o, u, slice, gaps, factors, RANGE_NEWTON);
+  return dilate_slice(o, u, slice, gaps, factors, RANGE_ANY);
 }
 
 /** Sums of a slice by one way, with what it has of gaps and factors known when this is compiled. */
 static StretchRange dilate_any(const Ordinary *o, double *const *u, int64_t slice, StretchRange range)
 {
-  const float *surface = o->surface ? o->surface[slice] : NULL;
-  if (surface && o->gaps[slice]) return dilate_way(o, u, slice, true, surface, range);
-  if (surface) return dilate_way(o, u, slice, false, surface, range);
-  if (o->gaps[slice]) return dilate_way(o, u, slice, true, NULL, range);
-  return dilate_way(o, u, slice, false, NULL, range);
+  const Factors factors = factors_of(o, slice);
+  const Factors surface = {factors.surface, NULL};
+  if (factors.unlike) return dilate_way(o, u, slice, true, factors, range);
+  if (factors.surface && o->gaps[slice]) return dilate_way(o, u, slice, true, surface, range);
+  if (factors.surface) return dilate_way(o, u, slice, false, surface, range);
+  if (o->gaps[slice]) return dilate_way(o, u, slice, true, (Factors){0}, range);
+  return dilate_way(o, u, slice, false, (Factors){0}, range);
 }
 
 static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
@@ -169,9 +197,37 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
   return -1;
 }
 
+/** Adds a and b - a of the other ends of half a slot to those of its own ends, with the factors near interfaces.
+ *  @param[in] stored  the other ends of a stored slot, or NULL
+ *  @param[in] there  first of the other ends of a lattice slot
+ *  @param[in,out] base, slope  of the own ends; sums of both */
+LANES_INLINE void add_states(const Ordinary *o, Factors factors, int64_t slice, int64_t slot, int half,
+                             const int32_t *stored, int64_t there, const Lanes other[2], Lanes *base, Lanes *slope)
+{
+  if (!factors.unlike) {
+    *base += other[0];
+    *slope += other[1];
+    return;
+  }
+  const double *free = o->particles->free_strain;
+  const int64_t here = slice * SLICE + LANES * half;
+  const Lanes own = unlike_factor(o, factors, slice, slot, half, ORDINARY_OWN),
+              others = unlike_factor(o, factors, slice, slot, half, ORDINARY_OTHER),
+              spring = unlike_factor(o, factors, slice, slot, half, ORDINARY_SPRING);
+  const Lanes stiffness = spring * (*base + *slope + other[0] + other[1]);
+  *base = own * *base + others * other[0];
+  if (free) { /* a has the free strain of b, by the factors of the dilatation */
+    const Lanes shear = stored ? lanes_gather(o->shear, stored) : lanes_load(o->shear + there),
+                strain = stored ? lanes_gather(free, stored) : lanes_load(free + there);
+    *base +=
+        (own - spring) * lanes_load(o->shear + here) * lanes_load(free + here) + (others - spring) * shear * strain;
+  }
+  *slope = stiffness - *base;
+}
+
 /** With A = a_i + a_j and C = b_i + b_j - A the force of a bond is w (A + C g) y: e / |y| is g, and |xi| / |y| is 1 - g. */
 LANES_INLINE void resist_lattice(const Ordinary *o, double *const *u, int64_t slice, int64_t slot, int half, bool gaps,
-                                 const float *surface, StretchRange range, const Lanes own[3], Lanes base, Lanes slope,
+                                 Factors factors, StretchRange range, const Lanes own[3], Lanes base, Lanes slope,
                                  Lanes force[3])
 {
   const int pattern = family_pattern(o->family, slice, slot);
@@ -179,20 +235,20 @@ LANES_INLINE void resist_lattice(const Ordinary *o, double *const *u, int64_t sl
   const int64_t there = family_base(o->family, slice, slot) + LANES * half;
   Lanes twice[3], d = lattice_stretch(o, u, row->twice, slice, slot, half, own, twice), g;
   const Lanes weight = lanes_set(row->weight);
-  base += lanes_load(o->base + there);
-  slope += lanes_load(o->slope + there);
+  const Lanes other[2] = {lanes_load(o->base + there), lanes_load(o->slope + there)};
+  add_states(o, factors, slice, slot, half, NULL, there, other, &base, &slope);
   if (range == RANGE_SERIES)
     g = series_of(row->series, d, d * d);
   else
     g = weight * shortening(-lanes_set(o->family->patterns[pattern].by_square) * d, range);
-  Lanes pull = by_surface(o, surface, slice, slot, half, weight * base + slope * g);
+  Lanes pull = by_surface(o, factors, slice, slot, half, weight * base + slope * g);
   if (gaps) pull = lanes_intact(o->family->intact[slot], half, pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * twice[k];
 }
 
-LANES_INLINE void resist_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
-                                const float *surface, StretchRange range, const StretchHere *here, Lanes base,
-                                Lanes slope, StretchWalk *walk, Lanes force[3])
+LANES_INLINE void resist_stored(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps, Factors factors,
+                                StretchRange range, const StretchHere *here, Lanes base, Lanes slope, StretchWalk *walk,
+                                Lanes force[3])
 {
   const Family *f = o->family;
   const int64_t at = walk->at;
@@ -201,14 +257,13 @@ LANES_INLINE void resist_stored(const Ordinary *o, int64_t slice, int64_t slot, 
   Lanes answer[2];
   lanes_gather_pairs(o->answer, f->neighbour + at, answer);
   family_fetch_ahead(f, at, o->answer, 2);
-  base += answer[0];
-  slope += answer[1];
-  Lanes pull = by_surface(o, surface, slice, slot, half, ends.weight) * (base + slope * shortening(ends.d, range));
+  add_states(o, factors, slice, slot, half, f->neighbour + at, 0, answer, &base, &slope);
+  Lanes pull = by_surface(o, factors, slice, slot, half, ends.weight) * (base + slope * shortening(ends.d, range));
   if (gaps) pull = lanes_intact(f->intact[slot], half, pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * ends.y[k];
 }
 
-LANES_INLINE void resist_slice(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, const float *surface,
+LANES_INLINE void resist_slice(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, Factors factors,
                                StretchRange range)
 {
   const Family *f = o->family;
@@ -222,26 +277,26 @@ LANES_INLINE void resist_slice(const Ordinary *o, const Sweep *sweep, int64_t sl
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      resist_lattice(o, u, slice, slot, half, gaps, surface, range, own[half], base[half], slope[half], force[half]);
+      resist_lattice(o, u, slice, slot, half, gaps, factors, range, own[half], base[half], slope[half], force[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere here = stretch_here(o->particles, u, slice, half);
     StretchWalk walk = stretch_walk(f, o->shown, f->stored[slice], f->first[slice + 1], half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      resist_stored(o, slice, slot, half, gaps, surface, range, &here, base[half], slope[half], &walk, force[half]);
+      resist_stored(o, slice, slot, half, gaps, factors, range, &here, base[half], slope[half], &walk, force[half]);
   }
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) lanes_store(sweep->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
-LANES_INLINE void resist_way(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, const float *surface)
+LANES_INLINE void resist_way(const Ordinary *o, const Sweep *sweep, int64_t slice, bool gaps, Factors factors)
 {
   const StretchRange range = (StretchRange)o->range[slice];
   if (range == RANGE_SERIES)
-    resist_slice(o, sweep, slice, gaps, surface, RANGE_SERIES);
+    resist_slice(o, sweep, slice, gaps, factors, RANGE_SERIES);
   else if (range == RANGE_NEWTON)
-    resist_slice(o, sweep, slice, gaps, surface, RANGE_NEWTON);
+    resist_slice(o, sweep, slice, gaps, factors, RANGE_NEWTON);
   else
-    resist_slice(o, sweep, slice, gaps, surface, RANGE_ANY);
+    resist_slice(o, sweep, slice, gaps, factors, RANGE_ANY);
 }
 
 static int64_t resist(const Ordinary *ordinary, const Sweep *sweep)
@@ -249,15 +304,18 @@ static int64_t resist(const Ordinary *ordinary, const Sweep *sweep)
   const Ordinary local = *ordinary, *o = &local; /* so that stores are seen not to change it */
   const int64_t last = sweep->last;
   for (int64_t slice = sweep->first; slice < last; ++slice) {
-    const float *surface = o->surface ? o->surface[slice] : NULL;
-    if (surface && o->gaps[slice])
+    const Factors factors = factors_of(o, slice);
+    const Factors surface = {factors.surface, NULL};
+    if (factors.unlike)
+      resist_way(o, sweep, slice, true, factors);
+    else if (factors.surface && o->gaps[slice])
       resist_way(o, sweep, slice, true, surface);
-    else if (surface)
+    else if (factors.surface)
       resist_way(o, sweep, slice, false, surface);
     else if (o->gaps[slice])
-      resist_way(o, sweep, slice, true, NULL);
+      resist_way(o, sweep, slice, true, (Factors){0});
     else
-      resist_way(o, sweep, slice, false, NULL);
+      resist_way(o, sweep, slice, false, (Factors){0});
   }
   return -1;
 }

@@ -35,9 +35,11 @@ static char *loads_of(const Layers *of, State state)
   const bool solid = is_solid(of);
   const char *up = solid ? "z" : "y";
   if (state == STATE_ALONG)
-    return text_format("  - {on: {all: yes}, field: {displacement: ['1e-6 * x', free%s]}}\n"
-                       "  - {on: {nearest: [8, %s]}, displacement: [free, %s]}\n",
-                       solid ? ", free" : "", solid ? "4, 0" : "0", solid ? "0, 0" : "0");
+    return text_format(solid ? "  - {on: {all: yes}, field: {displacement: ['1e-6 * x', free, free]}}\n"
+                               "  - {on: {nearest: [8, 4, 0]}, displacement: [free, 0, 0]}\n"
+                               "  - {on: {nearest: [8, 4, 5]}, displacement: [free, 0, free]}\n"
+                             : "  - {on: {all: yes}, field: {displacement: ['1e-6 * x', free]}}\n"
+                               "  - {on: {nearest: [8, 0]}, displacement: [free, 0]}\n");
   return text_format("  - {on: {block: a, face: x-}, support: {held: periodic}}\n"
                      "  - {on: {block: b, face: x-}, support: {held: periodic}}\n%s"
                      "  - {on: {block: a, face: %s-, layers: %d}, displacement: [0, 0%s]}\n"
