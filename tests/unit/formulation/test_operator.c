@@ -522,9 +522,44 @@ static void bodies_of_several_formulations_are_the_sum_of_all_their_points(void 
   }
 }
 
+/** Two elastic materials, bonds of which are in series across their interface, and a third one that flows or none. */
+static void bodies_of_two_elastic_materials_are_the_sum_of_their_points(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *formulation, *space, *law, *third;
+  } of[] = {
+      {"bond-based", "plane stress", "elastic-1d", ""},
+      {"bond-based, surface correction: energy", "3-D", "elastic-1d", ""},
+      {"bond-based", "plane strain", "elastic-1d", "elastic-perfectly-plastic, Young modulus: 70, yield stress: 1"},
+      {"ordinary", "plane stress", "elastic, Poisson ratio: 0.2", ""},
+      {"ordinary, lattice weights: plain", "3-D", "elastic, Poisson ratio: 0.3", ""},
+      {"ordinary", "plane strain", "elastic, Poisson ratio: 0.4",
+       "j2, Young modulus: 70, Poisson ratio: 0.3, yield stress: 1"},
+  };
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
+    const bool plane = *of[k].space == 'p', third = *of[k].third != 0;
+    const char *const *blocks = plane ? plane_bodies[0] : space_bodies[0];
+    breccia_model *model =
+        model_of("materials: {m: {model: %s, density: 1, Young modulus: 150}, n: {model: %s, density: 1, Young "
+                 "modulus: 15}%s%s%s}\n"
+                 "peridynamics: {space: %s, horizon: 2.5, formulation: %s}\nbody: {a: {material: m, %s}, b: {material: "
+                 "n, %s}%s}\n" CUT "solve: {implicit: {end time: 1, stiffness damping: 1e-6}}\n",
+                 of[k].law, of[k].law, third ? ", o: {density: 1, model: " : "", of[k].third, third ? "}" : "",
+                 of[k].space, of[k].formulation, blocks[0], blocks[1],
+                 third ? ", c: {material: o, spacing: 1, lattice: square, thickness: 0.7, shape: {box: {from: [9, 0], "
+                         "to: [12, 6]}}}"
+                       : "");
+    const Law law = {.elastic = !third, .strain = third ? 0.01 : 0.03, .slack = third ? 1e-5 : 1e-7};
+    check_model(model, &law, 0, of[k].formulation);
+    breccia_model_destroy(&model);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bodies_of_two_elastic_materials_are_the_sum_of_their_points),
       cmocka_unit_test(every_formulation_is_the_sum_of_its_points),
       cmocka_unit_test(bodies_of_several_formulations_are_the_sum_of_all_their_points),
   };
