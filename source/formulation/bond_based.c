@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include "formulation/interface.h"
 #include "formulation/shape_tensor.h"
 
 #include <stdlib.h>
@@ -97,6 +98,7 @@ static void *create(const FormulationParts *parts, Error *error)
                    .materials = parts->materials,
                    .material = parts->material,
                    .foreign = parts->foreign,
+                   .may_break = parts->may_break,
                    .space = parts->space,
                    .influence = parts->influence};
   static const BondBasedSpec standard = {
@@ -312,6 +314,11 @@ static bool strength_of_body(const void *formulation)
   return ((const BondBased *)formulation)->strength_of_body;
 }
 
+static bool shifts_interface(const void *formulation, const Material *one, const Material *other)
+{
+  return ((const BondBased *)formulation)->may_break || !interfaces_join(one, other);
+}
+
 static FormerBonds former_bonds(const void *formulation)
 {
   const BondBased *b = formulation;
@@ -337,7 +344,6 @@ const FormulationType formulation_bond_based = {
     .components = 1,
     .on_bonds = true,
     .fixed_poisson = true,
-    .shifts_interfaces = true,
     .section = &bond_based_section,
     .create = create,
     .destroy = destroy,
@@ -373,6 +379,7 @@ const FormulationType formulation_bond_based = {
     .strength_of_body = strength_of_body,
     .critical_stretch = bond_critical_stretch,
     .shown_young = bond_shown_young,
+    .shifts_interface = shifts_interface,
     .describe = bond_describe,
     .former_bonds = former_bonds,
     .takes_secants = takes_secants,

@@ -44,6 +44,7 @@ struct BondBased {
   const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   const Influence *influence;
+  bool may_break;        /* as in FormulationParts */
   bool strength_of_body; /* tensile strengths of the deck are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */

@@ -31,6 +31,14 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   return c->sweeps->resist(c, sweep);
 }
 
+static bool shifts_interface(const void *formulation, const Material *one, const Material *other)
+{
+  (void)formulation;
+  (void)one;
+  (void)other;
+  return true;
+}
+
 const FormulationType formulation_correspondence = {
     .name = "correspondence",
     .about = "non-ordinary state-based: one strain per particle from its family, with control of zero-energy modes",
@@ -77,7 +85,7 @@ const FormulationType formulation_correspondence = {
     .characteristic_length = correspondence_characteristic_length,
     .softening_length = correspondence_softening_length,
     .control = &correspondence_control,
-    .shifts_interfaces = true,
+    .shifts_interface = shifts_interface,
     .former_bonds = correspondence_former_bonds,
     .scratch = correspondence_scratch,
     .give_way = correspondence_give_way,

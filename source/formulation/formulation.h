@@ -195,7 +195,6 @@ struct FormulationType {
   bool laminates;
   bool fixed_poisson;     /* bodies show Poisson's ratio 1/4, in plane stress 1/3, whatever the material says */
   bool locks;             /* bodies that nearly keep their volume are too stiff in bending */
-  bool shifts_interfaces; /* the softer of two layers acts thinner than it is */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
@@ -329,6 +328,8 @@ struct FormulationType {
   /** Young's modulus that the lattice of a block shows along one of its axes, over that of its material; NaN: it resists nothing there, or fills none.
    *  NULL: they are the same. */
   double (*shown_young)(const void *formulation, int block, int axis);
+  /** Returns true if the softer of two layers of these materials acts thinner than it is. NULL: never. */
+  bool (*shifts_interface)(const void *formulation, const Material *one, const Material *other);
   /** Adds what a user should know before a run, as one line, in `units`; NULL: nothing. */
   void (*describe)(const void *formulation, const Units *units, Text *text);
   /** Arrays over places, of force states and what else each evaluation writes before it reads it: strains and stresses of the state evaluated

@@ -12,18 +12,29 @@ static const Material *interface_material(const Interfaces *i, int64_t place)
   return &i->parts.materials[i->parts.material[place / SLICE]];
 }
 
+static bool interface_law_is_linear(const Material *m)
+{
+  return m->law->linear && material_is_unlimited(m);
+}
+
+bool interfaces_join(const Material *one, const Material *other)
+{
+  return interface_law_is_linear(one) && interface_law_is_linear(other) && !material_is_as_stiff(one, other);
+}
+
 /** Returns true if a place belongs to the formulation and its law is linear without a limit. */
 static bool interface_is_linear(const Interfaces *i, int64_t place)
 {
-  const Material *m = interface_material(i, place);
-  return !is_foreign(i->parts.foreign, place) && m->law->linear && material_is_unlimited(m);
+  return !is_foreign(i->parts.foreign, place) && interface_law_is_linear(interface_material(i, place));
 }
 
+/** Returns true if two places have linear laws of different stiffness. */
 static bool interface_is_unlike(const Interfaces *i, int64_t one, int64_t other)
 {
   const int32_t *material = i->parts.material;
-  return material[one / SLICE] != material[other / SLICE] &&
-         !material_is_as_stiff(interface_material(i, one), interface_material(i, other));
+  return material[one / SLICE] != material[other / SLICE] && !is_foreign(i->parts.foreign, one) &&
+         !is_foreign(i->parts.foreign, other) &&
+         interfaces_join(interface_material(i, one), interface_material(i, other));
 }
 
 static double interface_modulus(const Interfaces *i, int64_t place)
@@ -101,7 +112,6 @@ static double interface_series_of(const Interfaces *i, int64_t one, int64_t othe
   }
   bool unlike = interface_is_unlike(i, low, high);
   double compliance = 0;
-  if (!interface_is_linear(i, low) || !interface_is_linear(i, high)) return 1;
   for (int n = 0; n < MOST_CELLS && w.at < 1; ++n) {
     const int64_t place = w.place;
     const double piece = interface_step(i, &w, low, high);
@@ -220,10 +230,8 @@ static void interface_find_normal(void *context, int64_t place)
 static bool interface_is_possible(const FormulationParts *parts)
 {
   for (int a = 0; a < parts->material_count; ++a)
-    for (int b = 0; b < a; ++b) {
-      const Material *one = &parts->materials[a], *other = &parts->materials[b];
-      if (one->law->linear && other->law->linear && !material_is_as_stiff(one, other)) return !parts->may_break;
-    }
+    for (int b = 0; b < a; ++b)
+      if (interfaces_join(&parts->materials[a], &parts->materials[b])) return !parts->may_break;
   return false;
 }
 
@@ -293,9 +301,8 @@ double interfaces_along(const Interfaces *i, int64_t place, const Bond *bond)
 {
   const double most = 0.1; /* sine of the angle with the interface */
   const double across = fmax(interface_across(i, place, bond), interface_across(i, bond->neighbour, bond));
-  return interface_is_linear(i, place) && !interface_is_unlike(i, place, bond->neighbour)
-             ? 1 - interface_smooth(0, most, sqrt(across))
-             : 0;
+  const bool inside = interface_is_linear(i, bond->neighbour) && !interface_is_unlike(i, place, bond->neighbour);
+  return inside ? 1 - interface_smooth(0, most, sqrt(across)) : 0;
 }
 
 /** Returns the elongation of a unit bond, or its square, averaged over the directions of a unit strain along the

@@ -28,6 +28,10 @@ typedef struct Interfaces {
 int interfaces_create(Interfaces *interfaces, const FormulationParts *parts, const double *modulus, Error *error);
 void interfaces_destroy(Interfaces *interfaces);
 
+/** Returns true if bonds between two materials can be pieces in series: both laws are linear without a limit, and their
+ *  moduli differ. */
+bool interfaces_join(const Material *one, const Material *other);
+
 /** Returns the stiffness of a bond over the mean of both ends' stiffness [-]. */
 static inline double interfaces_series(const Interfaces *i, int64_t slice, int64_t slot, int lane)
 {

@@ -103,6 +103,7 @@ struct Ordinary {
   double *answer;               /* [places][2] a and b - a, for them too */
   float *by_length;             /* of bonds in stored slots (stretch_lengths); NULL if there are none */
   double shortest;              /* of all bonds */
+  bool may_break;               /* as in FormulationParts */
   breccia_deviator *deviators;  /* [materials] */
   int material_count;
   Flow *flow;     /* NULL: all families are elastic */
@@ -221,6 +222,7 @@ void ordinary_describe(const void *formulation, const Units *units, Text *text);
 double ordinary_crack_length(const void *formulation, int block, const double normal[3]);
 double ordinary_critical_stretch(const BondLength *of, const Material *material, double energy);
 size_t ordinary_bytes(const void *formulation);
+bool ordinary_shifts_interface(const void *formulation, const Material *one, const Material *other);
 FormerBonds ordinary_former_bonds(const void *formulation);
 double *ordinary_shares(void *formulation);
 

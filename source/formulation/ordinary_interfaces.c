@@ -108,6 +108,11 @@ static int ordinary_interface_room(const OrdinaryInterfaces *of, Error *error)
   return BRECCIA_OK;
 }
 
+bool ordinary_shifts_interface(const void *formulation, const Material *one, const Material *other)
+{
+  return ((const Ordinary *)formulation)->may_break || !interfaces_join(one, other);
+}
+
 int ordinary_find_interfaces(Ordinary *o, const FormulationParts *parts, Error *error)
 {
   const Particles *p = o->particles;

@@ -205,6 +205,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
                   .materials = parts->materials,
                   .material = parts->material,
                   .foreign = parts->foreign,
+                  .may_break = parts->may_break,
                   .space = parts->space,
                   .dimensions = parts->body->dimensions,
                   .shortest = shortest_bond(parts->family)};

@@ -44,28 +44,20 @@ static double stress_scale(int component)
   return component < 3 ? 1 : sqrt(2);
 }
 
-/** Returns half of the stiffness of a bond by its elongation over that of a bond inside the material of the place. */
-static double stress_spring(const Ordinary *o, int64_t place, int64_t at, const Bond *bond)
-{
-  if (!o->unlike || !o->unlike[place / SLICE]) return 1;
-  return ordinary_factor(o, place, at, ORDINARY_SPRING) * (o->shear[place] + o->shear[bond->neighbour]) /
-         (2 * o->shear[place]);
-}
+/** Tension that a place gives a bond, and stiffness of the bond over that of a bond inside the material of the place.
+ *  Near interfaces both are half of those of both ends, which pieces in series have in common. */
+typedef struct StressBond {
+  double tension, stiffness;
+} StressBond;
 
-/** Returns the tension that a place gives a bond; near interfaces half of that of both ends, which pieces in series have
- *  in common. */
-static double stress_tension(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, const OrdinaryStretch *s)
+static StressBond stress_bond(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, const OrdinaryStretch *s)
 {
-  const double own = ordinary_end(o, place, at, bond, s).tension;
-  if (!o->unlike || !o->unlike[place / SLICE]) return own;
-  const double other = ordinary_factor(o, place, at, ORDINARY_OTHER),
+  const double own = ordinary_end(o, place, at, bond, s).tension, other = ordinary_factor(o, place, at, ORDINARY_OTHER),
                spring = ordinary_factor(o, place, at, ORDINARY_SPRING), shear = o->shear[bond->neighbour];
-  if (other == 1 && spring == 1) return own;
-  return (own +
-          (other * o->base[bond->neighbour] + (other - spring) * shear * ordinary_free(o, bond->neighbour)) *
-              bond->length +
-          spring * shear * s->elongation) /
-         2;
+  if (other == 1 && spring == 1) return (StressBond){own, 1};
+  const double base = other * o->base[bond->neighbour] + (other - spring) * shear * ordinary_free(o, bond->neighbour);
+  return (StressBond){(own + base * bond->length + spring * shear * s->elongation) / 2,
+                      spring * (o->shear[place] + shear) / (2 * o->shear[place])};
 }
 
 /** Computes the sums over the intact bonds of a family. */
@@ -80,14 +72,13 @@ static StressSums stress_sums(const Ordinary *o, int64_t place)
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double tension = stress_tension(o, place, slot * SLICE + lane, &bond, &s),
-                 spring = stress_spring(o, place, slot * SLICE + lane, &bond),
-                 shift = o->flow ? o->flow->shift[1][slot * SLICE + lane] : 0,
+    const StressBond of = stress_bond(o, place, slot * SLICE + lane, &bond, &s);
+    const double shift = o->flow ? o->flow->shift[1][slot * SLICE + lane] : 0,
                  elastic = (s.elongation - freely * bond.length - shift) / bond.length;
     for (int k = 0; k < 6; ++k) {
       const int r = symmetric_row[k], c = symmetric_column[k];
-      sums.force[k] += bond.weight * tension / s.length * s.y[r] * s.y[c];
-      sums.elastic[k] += bond.weight * spring * elastic * bond.xi[r] * bond.xi[c];
+      sums.force[k] += bond.weight * of.tension / s.length * s.y[r] * s.y[c];
+      sums.elastic[k] += bond.weight * of.stiffness * elastic * bond.xi[r] * bond.xi[c];
       sums.second[k] += bond.weight * bond.xi[r] * bond.xi[c];
     }
   }

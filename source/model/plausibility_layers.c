@@ -126,8 +126,9 @@ static void layers_meet(const Domain *d, const Region *region, int64_t slice, Me
       if (!(f->intact[slot] >> lane & 1)) continue;
       const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(f, slice, slot, lane).neighbour;
       if (domain_region(d, place) != region || domain_region(d, other) != region) continue;
-      const double ratio = layers_ratio(layers_material(d, place), layers_material(d, other));
-      if (!(ratio > farthest->ratio)) continue;
+      const Material *one = layers_material(d, place), *there = layers_material(d, other);
+      const double ratio = layers_ratio(one, there);
+      if (!(ratio > farthest->ratio) || !region->type->shifts_interface(region->formulation, one, there)) continue;
       *farthest = (Meeting){d->particles->block[other / SLICE], d->particles->block[slice], ratio};
     }
 }
@@ -154,7 +155,7 @@ void plausibility_describe_layers(const breccia_model *model, Text *text)
   const Domain *d = &model->domain;
   for (int r = 0; r < d->region_count; ++r) {
     Meeting farthest = {.ratio = least_ratio};
-    for (int64_t slice = 0; d->regions[r].type->shifts_interfaces && slice < d->particles->slices; ++slice)
+    for (int64_t slice = 0; d->regions[r].type->shifts_interface && slice < d->particles->slices; ++slice)
       layers_meet(d, &d->regions[r], slice, &farthest);
     if (farthest.ratio > least_ratio) layers_describe(d, &d->regions[r], &farthest, text);
   }
