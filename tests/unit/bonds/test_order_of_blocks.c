@@ -13,6 +13,7 @@ static const struct {
     {"bond-based", "model: bilinear-softening, tensile strength: 20, fracture energy: 0.05", ""},
     {"hybrid", "model: mazars, Poisson ratio: 0.2, tensile strength: 20, fracture energy: 0.05", ""},
     {"micropolar", "model: link-damage, Poisson ratio: 0.2, tensile stretch: 2e-3, fracture energy: 0.05", ""},
+    {"bond-based", "model: elastic-1d", ""},
     {"ordinary", "model: elastic, Poisson ratio: 0.2", ""},
     {"correspondence", "model: elastic, Poisson ratio: 0.2", ""},
     {"bond-based", "model: elastic-1d", "failure: {critical stretch: 0.004}\n"},
@@ -25,7 +26,7 @@ static const struct {
      "failure: {criterion: critical bond energy, fracture energy: 0.02}\n"},
 };
 /* Laws of the kinds before SOFTENING soften; bonds of the kinds from BREAKING on break. */
-enum { SOFTENING = 3, BREAKING = 5 };
+enum { SOFTENING = 3, BREAKING = 6 };
 
 static breccia_model *body(int kind, const int order[3])
 {

@@ -55,8 +55,8 @@ static char *loads_of(const Layers *of, State state)
 static double energy_of(const Layers *of, State state)
 {
   const double height = (ROWS + (state == STATE_ALONG ? 0 : HELD)) * rows_apart(of);
-  char *corner[4] = {corner_of(of, 0, -height, 0), corner_of(of, is_solid(of) ? SHORT : LONG, 0, SHORT), corner_of(of, 0, 0, 0),
-                     corner_of(of, is_solid(of) ? SHORT : LONG, height, SHORT)},
+  char *corner[4] = {corner_of(of, 0, -height, 0), corner_of(of, is_solid(of) ? SHORT : LONG, 0, SHORT),
+                     corner_of(of, 0, 0, 0), corner_of(of, is_solid(of) ? SHORT : LONG, height, SHORT)},
        *loads = loads_of(of, state),
        *law = strcmp(of->formulation, "ordinary") ? text_format("model: elastic-1d")
                                                   : text_format("model: elastic, Poisson ratio: %.17g", of->poisson);
@@ -91,7 +91,6 @@ static void assert_stiff(const Layers *of, double near)
 {
   for (State s = 0; s < STATES; ++s) {
     const double stiffness = stiffness_of(of, s);
-    if (getenv("SHOWN")) fprintf(stderr, "%s %s %g contrast %g %s: %.4f\n", of->formulation, of->space, of->spacings, of->contrast, state_words[s], stiffness);
     if (!(fabs(stiffness - 1) <= (s == STATE_ALONG ? near : 0.002)))
       fail_msg("%s, %s, %g spacings, contrast %g, %s: %.5f of the stiffness of both layers", of->formulation, of->space,
                of->spacings, of->contrast, state_words[s], stiffness);
@@ -121,9 +120,72 @@ static void layers_in_space_are_as_stiff_as_hooke_says(void **state)
   }
 }
 
+/** Bonds of laws that can fail keep the mean of both ends: pieces in series would carry on above the strength of the
+ *  softer one. */
+static void laws_that_can_fail_keep_the_mean_of_both_ends(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *formulation, *stiff, *soft, *failure;
+    bool joins;
+  } of[] = {
+      {"bond-based", "elastic-1d", "elastic-1d", "", true},
+      {"bond-based", "elastic-1d", "elastic-perfectly-plastic, yield stress: 1", "", false},
+      {"bond-based", "elastic-1d", "elastic-brittle, tensile strength: 1", "", false},
+      {"bond-based", "elastic-1d", "bilinear-softening, tensile strength: 1, fracture energy: 1", "", false},
+      {"bond-based", "elastic-1d", "elastic-1d", "failure: {critical stretch: 0.01}\n", false},
+      {"ordinary", "elastic, Poisson ratio: 0.2", "elastic, Poisson ratio: 0.2", "", true},
+      {"ordinary", "elastic, Poisson ratio: 0.2", "j2, Poisson ratio: 0.2, yield stress: 1", "", false},
+      {"ordinary", "elastic, Poisson ratio: 0.2", "elastic, Poisson ratio: 0.2", "failure: {critical stretch: 0.01}\n",
+       false},
+  };
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials:\n"
+        "  a: {density: 2, Young modulus: 1e6, model: %s}\n  b: {density: 2, Young modulus: 1e5, model: %s}\n"
+        "body:\n  a: {material: a, lattice: square, spacing: 1, thickness: 1, shape: {box: {from: [0, -4], to: [8, "
+        "0]}}}\n"
+        "  b: {material: b, lattice: square, spacing: 1, thickness: 1, shape: {box: {from: [0, 0], to: [8, 4]}}}\n"
+        "peridynamics: {space: plane stress, formulation: %s}\n%ssolve: {explicit: {time step: 1e-6, steps: 1}}\n",
+        of[k].stiff, of[k].soft, of[k].formulation, of[k].failure);
+    const Domain *d = &m->domain;
+    const Region *region = &d->regions[0];
+    const int32_t stiff = particles_nearest(d->particles, (double[]){4.5, -0.5, 0}),
+                  soft = particles_nearest(d->particles, (double[]){4.5, 0.5, 0});
+    const bool shifts = region->type->shifts_interface(region->formulation, &d->materials[d->material[stiff / SLICE]],
+                                                       &d->materials[d->material[soft / SLICE]]);
+    double state_of[3];
+    for (int32_t n = 0; n < d->particles->count; ++n) {
+      const int32_t i = d->particles->place_of[n];
+      for (int c = 0; c < 2; ++c) d->particles->displacement[c][i] = 1e-9 * d->particles->position[c][i];
+    }
+    compute_forces(m);
+    const int64_t slot = family_slot(&d->family, stiff, soft);
+    double force = 0;
+    for (int end = 0; end < 2; ++end) {
+      const int32_t own = end ? soft : stiff;
+      const int64_t at = end ? family_slot(&d->family, soft, stiff) : slot;
+      region->type->half_state(region->formulation, d->particles->displacement, NULL, own / SLICE, at, own % SLICE,
+                               state_of);
+      force += fabs(state_of[1]);
+    }
+    /* Moduli of 1 and 0.1 have the mean of 0.55, and 0.182 in series. */
+    const int64_t one = particles_nearest(d->particles, (double[]){4.5, -1.5, 0});
+    double inside[3];
+    region->type->half_state(region->formulation, d->particles->displacement, NULL, one / SLICE,
+                             family_slot(&d->family, (int32_t)one, stiff), (int)(one % SLICE), inside);
+    const double share = force / (2 * fabs(inside[1]));
+    if (shifts == of[k].joins || !(of[k].joins ? share < 0.3 : share > 0.45 && share < 0.7))
+      fail_msg("%s, %s on %s %s: a bond across has %.3f of the stiffness of the stiffer side", of[k].formulation,
+               of[k].soft, of[k].stiff, of[k].failure, share);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(layers_in_the_plane_are_as_stiff_as_hooke_says),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(laws_that_can_fail_keep_the_mean_of_both_ends),
+                                     cmocka_unit_test(layers_in_the_plane_are_as_stiff_as_hooke_says),
                                      cmocka_unit_test(layers_in_space_are_as_stiff_as_hooke_says)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
