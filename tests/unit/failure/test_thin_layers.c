@@ -69,6 +69,33 @@ static void thin_layers_fail_at_their_strength(void **state)
   }
 }
 
+/** Layers of enough rows between blocks of their own or of a larger modulus carry their strength and no more. */
+static void soft_layers_carry_their_strength_between_stiff_blocks(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *elastic, *law, *peridynamics;
+    int rows;
+    double least, most; /* peak over strength */
+  } strips[] = {
+      {LINE, SOFTENS, "formulation: bond-based, horizon: 2.015 spacings", 6, 0.85, 1.02},
+      {LINE, "model: elastic-perfectly-plastic, yield stress: 3e6", "formulation: bond-based, horizon: 2.015 spacings",
+       6, 0.9, 1.45},
+      {SOLID, YIELDS, "formulation: ordinary, horizon: 2.015 spacings", 8, 0.9, 1.15},
+  };
+  static const double ratios[] = {1, 10, 100};
+  for (size_t k = 0; k < sizeof strips / sizeof *strips; ++k)
+    for (int n = 0; n < 3; ++n) {
+      breccia_model *m =
+          strip_of(strips[k].elastic, strips[k].law, ratios[n], strips[k].rows, strips[k].peridynamics, 16e-6, "");
+      const double peak = strip_peak(m);
+      print_message("%s, contrast %g: %.3f\n", strips[k].law, ratios[n], peak);
+      if (!(peak >= strips[k].least && peak <= strips[k].most))
+        fail_msg("%s, %s, contrast %g: %.3f of the strength", strips[k].peridynamics, strips[k].law, ratios[n], peak);
+      breccia_model_destroy(&m);
+    }
+}
+
 /** Warnings appear below the number of rows that a layer needs by formulation, and for no layer that needs none. */
 static void layers_that_blocks_bridge_are_told(void **state)
 {
