@@ -116,7 +116,7 @@ static void layers_in_space_are_as_stiff_as_hooke_says(void **state)
   (void)state;
   for (int f = 0; f < 2; ++f) {
     assert_stiff(&(Layers){formulations[f], "3-D", "cubic", 2.015, 1000, 0.25}, 0.01);
-    assert_stiff(&(Layers){formulations[f], "3-D", "cubic", 3.015, 10, 0.2}, 0.004);
+    if (whole_walks()) assert_stiff(&(Layers){formulations[f], "3-D", "cubic", 3.015, 10, 0.2}, 0.004);
   }
 }
 
