@@ -74,26 +74,23 @@ static void soft_layers_carry_their_strength_between_stiff_blocks(void **state)
 {
   (void)state;
   static const struct {
-    const char *elastic, *law, *peridynamics;
-    int rows,
-        contrasts; /* contrasts: number of ratios; perfectly plastic bonds find no equilibrium beside the last one */
-    double least, most; /* peak over strength */
-  } strips[] = {
-      {LINE, SOFTENS, "formulation: bond-based, horizon: 2.015 spacings", 6, 3, 0.85, 1},
-      {LINE, "model: elastic-perfectly-plastic, yield stress: 3e6", "formulation: bond-based, horizon: 2.015 spacings",
-       6, 2, 0.9, 1.41},
-      {SOLID, YIELDS, "formulation: ordinary, horizon: 2.015 spacings", 8, 3, 0.9, 1.15},
-  };
+    const char *elastic, *law, *formulation;
+    int rows, contrasts; /* contrasts: number of ratios; perfectly plastic bonds find no equilibrium at the last one */
+    double least, most;  /* peak over strength */
+  } strips[] = {{LINE, SOFTENS, "bond-based", 6, 3, 0.85, 1},
+                {LINE, "model: elastic-perfectly-plastic, yield stress: 3e6", "bond-based", 6, 2, 0.9, 1.41},
+                {SOLID, YIELDS, "ordinary", 8, 3, 0.9, 1.15}};
   static const double ratios[] = {1, 10, 100};
   for (size_t k = 0; k < sizeof strips / sizeof *strips; ++k)
-    for (int n = 0; n < 3; ++n) {
-      breccia_model *m =
-          strip_of(strips[k].elastic, strips[k].law, ratios[n], strips[k].rows, strips[k].peridynamics, 16e-6, "");
+    for (int n = 0; n < strips[k].contrasts; ++n) {
+      char *words = text_format("formulation: %s, horizon: 2.015 spacings", strips[k].formulation);
+      breccia_model *m = strip_of(strips[k].elastic, strips[k].law, ratios[n], strips[k].rows, words, 16e-6, "");
       const double peak = strip_peak(m);
-      print_message("%s, contrast %g: %.3f\n", strips[k].law, ratios[n], peak);
+      print_message("%s, contrast %g: %.3f of the strength\n", strips[k].law, ratios[n], peak);
       if (!(peak >= strips[k].least && peak <= strips[k].most))
-        fail_msg("%s, %s, contrast %g: %.3f of the strength", strips[k].peridynamics, strips[k].law, ratios[n], peak);
+        fail_msg("%s, %s, contrast %g: %.3f of the strength", strips[k].formulation, strips[k].law, ratios[n], peak);
       breccia_model_destroy(&m);
+      free(words);
     }
 }
 
