@@ -44,10 +44,9 @@ const Verb verb_why = {
     .about = "why the bonds of a result broke or softened: counts by cause, and when, where and why the first ones did",
     .options = options,
     .more =
-        "FOLDER is the folder of a run, or its file results.vtkhdf. Causes: the limit of the failure criterion, with\n"
-        "value and limit; a law that found no stress; too few bonds left at a particle. Bonds, links or material "
-        "points\n"
-        "whose law softens are past their peak if their damage is above 0 at the last written state; damage of 1 "
-        "means\n"
-        "that they carry nothing.",
+        "FOLDER is the folder of a run, or its file results.vtkhdf. Each line names criterion, material, value and\n"
+        "limit. Causes: the limit of the failure criterion; a law that found no stress; too few bonds left at a\n"
+        "particle. Images of bonds in the layers outside of supports are counted apart. Bonds, links or material\n"
+        "points whose law softens are past their peak if their damage is above 0 at the last written state; damage\n"
+        "of 1 means that they carry nothing.",
     .run = why_run};

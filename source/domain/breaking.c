@@ -28,10 +28,47 @@ static bool make_room(void **array, size_t size, int64_t count, int64_t *capacit
   return true;
 }
 
-const char *break_cause_word(BreakCause cause)
+const BreakCauseType break_causes[BREAK_CAUSES] = {
+#define BREAK_CAUSE(NAME, ...) {__VA_ARGS__},
+#include "domain/break_causes.h"
+#undef BREAK_CAUSE
+};
+
+const char *domain_break_quantity(const Domain *d, BreakCause cause, int k)
 {
-  static const char *const words[BREAK_CAUSES] = {"limit", "law", "isolated"};
-  return words[cause];
+  const Criterion *criterion = d->failure.criterion;
+  if (break_causes[cause].quantity) return k ? NULL : break_causes[cause].quantity;
+  return criterion && criterion->measure ? criterion->quantities[k] : NULL;
+}
+
+const char *domain_break_dimension(const Domain *d, BreakCause cause)
+{
+  const Criterion *criterion = d->failure.criterion;
+  return !break_causes[cause].quantity && criterion && criterion->dimension ? criterion->dimension : "1";
+}
+
+const char *domain_break_criterion(const Domain *d, BreakCause cause)
+{
+  if (break_causes[cause].criterion) return break_causes[cause].criterion;
+  return d->failure.criterion ? d->failure.criterion->name : "";
+}
+
+bool domain_bond_outside(const Domain *d, const BrokenBond *bond)
+{
+  return body_outside(&d->body, bond->a) && body_outside(&d->body, bond->b);
+}
+
+int64_t domain_count_broken(const Domain *d, int64_t counts[BREAK_CAUSES])
+{
+  int64_t outside = 0;
+  memset(counts, 0, sizeof *counts * BREAK_CAUSES);
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    if (domain_bond_outside(d, &d->broken[n]))
+      ++outside;
+    else
+      ++counts[d->broken[n].cause];
+  }
+  return outside;
 }
 
 void domain_bond_middle(const Domain *d, const int32_t bond[2], double middle[3])
@@ -105,17 +142,44 @@ static void note_late(Domain *d, int32_t place)
   if (d->torn_count > before) find_received(d, &d->torn[before]);
 }
 
-/** Returns the value of a bond that the criterion compares, without the temporary raise of limits that orders the
- *  breaking of bonds; NaN for criteria without a value. */
-static double breaking_measure(Domain *d, int64_t slice, int64_t slot, int lane, double *limit)
+/** Finds value, limit and quantity by which the criterion judges a bond, without the temporary raise of limits that
+ *  orders the breaking of bonds. Value and limit are NaN for criteria without a value. */
+static void breaking_measure(Domain *d, BreakingBond *b)
 {
-  if (!d->failure.criterion->measure) return NAN;
-  const Bond bond = family_bond(&d->family, slice, slot, lane);
+  b->value = b->limit = NAN;
+  b->quantity = 0;
+  if (!d->failure.criterion || !d->failure.criterion->measure) return;
+  const Bond bond = family_bond(&d->family, b->slice, b->slot, b->lane);
   const double beyond = d->failure.beyond;
   d->failure.beyond = 0;
-  const double value = d->failure.criterion->measure(&d->failure, &d->family, slice, slot, &bond, lane, limit);
+  b->value = d->failure.criterion->measure(&d->failure, &d->family, b->slice, b->slot, &bond, b->lane, &b->limit,
+                                           &b->quantity);
   d->failure.beyond = beyond;
-  return value;
+}
+
+/** Replaces value, limit and quantity of a criterion by those of another cause of a broken bond. */
+static void breaking_measure_cause(const Domain *d, const BreakingBond *b, BrokenBond *broken)
+{
+  const Region *own = domain_region(d, b->slice * SLICE);
+  if (b->cause == BREAK_LIMIT) return;
+  broken->quantity = 0;
+  broken->limit = NAN;
+  if (b->cause == BREAK_LAW) {
+    const Bond bond = family_bond(&d->family, b->slice, b->slot, b->lane);
+    broken->value = failure_stretch(&d->family, b->slice * SLICE + b->lane, &bond);
+  } else {
+    broken->value = own->type->evenness(own->formulation, b->slice, b->slot, b->lane);
+    broken->limit = FORMULATION_LEAST_EVENNESS;
+  }
+}
+
+/** Returns the material whose limit or law decides on a bond: that of the place, or of the neighbour if its limit is
+ *  smaller. */
+static int breaking_material(const Domain *d, int64_t place, int64_t neighbour, BreakCause cause)
+{
+  const int own = d->material[place / SLICE], other = d->material[neighbour / SLICE];
+  const bool has_limits = cause == BREAK_LIMIT && d->failure.limit;
+  return has_limits && d->failure.limit[other] < d->failure.limit[own] ? other : own;
 }
 
 /** Returns E_c / E, the energy of a bond at its limit over its present energy. In equilibrium E exceeds E_c where an
@@ -167,16 +231,18 @@ static double break_bond(Domain *d, const BreakingBond *b, const Moment *moment)
   const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
   StoredEnergy energy;
   const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
-  const bool limited = b->cause == BREAK_LIMIT, isolated = b->cause == BREAK_ISOLATED;
-  const BrokenBond bond = {moment->step,
-                           moment->time,
-                           one < other ? one : other,
-                           one < other ? other : one,
-                           b->cause,
-                           limited ? b->value : NAN,
-                           limited ? b->limit : NAN};
-  const double share = isolated ? 1 : find_share(d, b, moment);
+  BrokenBond bond = {.step = moment->step,
+                     .time = moment->time,
+                     .a = one < other ? one : other,
+                     .b = one < other ? other : one,
+                     .cause = b->cause,
+                     .value = b->value,
+                     .limit = b->limit,
+                     .quantity = b->quantity,
+                     .material = breaking_material(d, place, neighbour, b->cause)};
+  const double share = b->cause == BREAK_ISOLATED ? 1 : find_share(d, b, moment);
   double shared = 0;
+  breaking_measure_cause(d, b, &bond);
   if (own->type->bond_energy) {
     own->type->bond_energy(own->formulation, b->slice, b->slot, b->lane, moment->time_step, &energy);
     if (own->type->face_force)
@@ -225,8 +291,7 @@ static void take_breaking(Domain *d, BreakingBond *b)
     d->out_of_memory = true;
     return;
   }
-  b->value = b->limit = NAN;
-  if (d->failure.criterion) b->value = breaking_measure(d, b->slice, b->slot, b->lane, &b->limit);
+  breaking_measure(d, b);
   d->breaking[d->breaking_count++] = *b;
 }
 
@@ -252,7 +317,7 @@ static int64_t judge(Domain *d, const Moment *moment, bool takes)
                       !was_squeezed(d, moment, &bond, place)))
           continue;
         count += !body_outside(&d->body, d->particles->number[place]);
-        BreakingBond b = {s, slot, lane, bond.neighbour, law ? BREAK_LAW : BREAK_LIMIT, NAN, NAN};
+        BreakingBond b = {s, slot, lane, bond.neighbour, law ? BREAK_LAW : BREAK_LIMIT, NAN, NAN, 0};
         if (takes) take_breaking(d, &b);
       }
   }
@@ -295,17 +360,18 @@ static bool break_stranded(Domain *d, const Moment *moment, double *limits)
   const int64_t before = d->broken_count;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     const Region *region = domain_region(d, s * SLICE);
-    if (!d->suspects[s] || !region->type->can_carry) continue;
+    if (!d->suspects[s] || !region->type->evenness) continue;
     for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
       for (int lane = 0; lane < SLICE; ++lane)
-        if (f->intact[slot] >> lane & 1 && !region->type->can_carry(region->formulation, s, slot, lane)) {
+        if (f->intact[slot] >> lane & 1 &&
+            !(region->type->evenness(region->formulation, s, slot, lane) > FORMULATION_LEAST_EVENNESS)) {
           const int32_t neighbour = family_bond(f, s, slot, lane).neighbour;
           const uint8_t *kept = d->failure.kept;
           if (kept && kept[s * SLICE + lane] & kept[neighbour]) continue;
           note_late(d, (int32_t)(s * SLICE + lane));
           note_late(d, neighbour);
           *limits += stranded_energy(d, s, slot, lane, neighbour);
-          const BreakingBond bond = {s, slot, lane, neighbour, BREAK_ISOLATED, NAN, NAN};
+          const BreakingBond bond = {s, slot, lane, neighbour, BREAK_ISOLATED, NAN, NAN, 0};
           book(d, break_bond(d, &bond, moment), 1);
         }
   }

@@ -58,20 +58,32 @@ typedef struct Joint {
   JointBond *bonds;
 } Joint;
 
-/** Cause of a broken bond. */
+/** Causes of broken bonds (domain/break_causes.h). */
 typedef enum BreakCause {
-  BREAK_LIMIT,    /* the bond exceeded the limit of the failure criterion */
-  BREAK_LAW,      /* the law of the bond or of an end could not be integrated, so that the point carries nothing */
-  BREAK_ISOLATED, /* earlier broken bonds left the family too few bonds for a force */
+#define BREAK_CAUSE(NAME, ...) BREAK_##NAME,
+#include "domain/break_causes.h"
+#undef BREAK_CAUSE
   BREAK_CAUSES
 } BreakCause;
+
+typedef struct BreakCauseType {
+  const char *word;      /* in result files and summaries */
+  const char *criterion; /* NULL: the failure criterion of the deck */
+  const char *quantity;  /* name of the value; NULL: that of the criterion */
+  bool has_limit;        /* the value is compared with a limit */
+  const char *count;     /* words after a number of bonds; the criterion follows if the cause has none of its own */
+  const char *about;     /* one clause for the reference of result files */
+} BreakCauseType;
+extern const BreakCauseType break_causes[BREAK_CAUSES];
 
 typedef struct BrokenBond {
   int64_t step;
   double time;
   int32_t a, b; /* numbers, a < b */
   BreakCause cause;
-  double value, limit; /* of the failure criterion, in its dimension; NaN: none, or another cause */
+  double value, limit; /* in the dimension of the quantity; NaN: the criterion has no value, the cause no limit */
+  int quantity;        /* index among those of the criterion (Criterion.quantities); 0 for other causes */
+  int material;        /* index of the material whose limit or law decided */
 } BrokenBond;
 
 /** A bond that breaks in the step under way, as judged while all bonds are intact. */
@@ -81,10 +93,8 @@ typedef struct BreakingBond {
   int32_t neighbour;
   BreakCause cause;
   double value, limit; /* of the failure criterion, in its dimension; NaN: none */
+  int quantity;        /* index among those of the criterion (Criterion.quantities) */
 } BreakingBond;
-
-/** Returns the word for a cause in result files and messages. */
-const char *break_cause_word(BreakCause cause);
 
 /** A step under way. */
 typedef struct Moment {
@@ -316,6 +326,18 @@ static inline double without_rounding(double value, double whole)
 {
   return fabs(value) < 1e-12 * whole ? 0 : value;
 }
+
+/** Returns the name of quantity k of a cause, as BrokenBond.quantity counts them; NULL after the last. */
+const char *domain_break_quantity(const Domain *domain, BreakCause cause, int k);
+/** Returns the dimension of the quantities of a cause; "1": plain numbers. */
+const char *domain_break_dimension(const Domain *domain, BreakCause cause);
+/** Returns the name of the criterion of a cause; "" if the deck has none. */
+const char *domain_break_criterion(const Domain *domain, BreakCause cause);
+/** Returns true if a bond lies in the layers outside of supports, where it is the image of a bond of the body. */
+bool domain_bond_outside(const Domain *domain, const BrokenBond *bond);
+/** Counts the broken bonds of the body by cause, those in layers outside of supports apart.
+ *  @return number of broken bonds in these layers */
+int64_t domain_count_broken(const Domain *domain, int64_t counts[BREAK_CAUSES]);
 
 /** Computes the midpoint of a bond inside the body. An end in a layer outside of a support is replaced by its original
  *  if both ends are in layers; otherwise the inner end alone gives the position.

@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Numbers of a saved broken bond: step, time, both ends, cause, value and limit; 0 encodes a missing value or
- *  limit. */
-enum { NUMBERS_PER_BOND = 7 };
+/** Numbers of a saved broken bond: step, time, both ends, cause, quantity, material, whether value and limit are known,
+ *  value and limit. */
+enum { NUMBERS_PER_BOND = 11 };
 
 /** What follows from the bonds of both ends of a broken or mended one. */
 static void renew_ends(Domain *d, const BrokenBond *bond)
@@ -37,6 +37,10 @@ static int64_t save_broken(const void *owner, double **numbers)
                                                  bond->a,
                                                  bond->b,
                                                  bond->cause,
+                                                 bond->quantity,
+                                                 bond->material,
+                                                 !isnan(bond->value),
+                                                 !isnan(bond->limit),
                                                  isnan(bond->value) ? 0 : bond->value,
                                                  isnan(bond->limit) ? 0 : bond->limit};
     memcpy(rows + NUMBERS_PER_BOND * n, numbers_of, sizeof numbers_of);
@@ -58,11 +62,17 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   d->broken_count = 0;
   for (const double *row = numbers; row < numbers + count; row += NUMBERS_PER_BOND) {
     if (!(row[2] >= 0 && row[2] < particles && row[3] >= 0 && row[3] < particles)) return STATE_MISFIT;
-    if (!(row[4] >= 0 && row[4] < BREAK_CAUSES)) return STATE_MISFIT;
-    const bool measured = row[4] == BREAK_LIMIT && (row[5] != 0 || row[6] != 0);
-    const BrokenBond bond = {
-        (int64_t)row[0],        row[1], (int32_t)row[2], (int32_t)row[3], (BreakCause)row[4], measured ? row[5] : NAN,
-        measured ? row[6] : NAN};
+    if (!(row[4] >= 0 && row[4] < BREAK_CAUSES && row[6] >= 0 && row[6] < d->material_count)) return STATE_MISFIT;
+    const BrokenBond bond = {.step = (int64_t)row[0],
+                             .time = row[1],
+                             .a = (int32_t)row[2],
+                             .b = (int32_t)row[3],
+                             .cause = (BreakCause)row[4],
+                             .quantity = (int)row[5],
+                             .material = (int)row[6],
+                             .value = row[7] > 0 ? row[9] : NAN,
+                             .limit = row[8] > 0 ? row[10] : NAN};
+    if (bond.quantity < 0 || bond.quantity > 1) return STATE_MISFIT;
     if (domain_record(d, &bond)) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
     forces_bond_broke(&d->forces, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
     renew_ends(d, &bond);

@@ -198,8 +198,9 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
 }
 
 static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
-                      double *limit)
+                      double *limit, int *quantity)
 {
+  (void)quantity;
   const Judgement of = judge(failure, f, slice, slot, bond, lane, true);
   *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
   return of.limit > 0 ? *limit * of.held / of.limit : 0;
@@ -250,7 +251,7 @@ const Criterion criterion_critical_energy = {
     .suspect = suspect,
     .exceeds = exceeds,
     .measure = measure,
-    .quantity = "bond energy",
+    .quantities = {"bond energy"},
     .power = 1,
     .energy_at_limit = energy_at_limit,
 };

@@ -50,31 +50,41 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
   return BRECCIA_OK;
 }
 
-/** Returns the larger of tension and shear of a bond, each over its limit. */
-static double load_of(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+/** Value and limit of one quantity of a bond, tension or shear. */
+typedef struct SectionLoad {
+  enum { TENSION, SHEAR } quantity;
+  double value, limit;
+} SectionLoad;
+
+/** Returns tension or shear of a bond: the one that is the larger share of its limit. */
+static SectionLoad section_load(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond,
+                                int lane)
 {
   const CriticalStressSpec *spec = failure->keys;
   const FailureRegion *own = &failure->regions[failure->region[slice]];
   const int64_t place = slice * SLICE + lane;
   const double limit = failure_limit(failure, place, bond->neighbour);
   double tension, shear;
-  if (isinf(limit) || !failure_is_longer(f, place, bond)) return 0;
+  if (isinf(limit) || !failure_is_longer(f, place, bond)) return (SectionLoad){TENSION, 0, limit};
   own->type->section_stress(own->formulation, slice, slot, lane, &tension, &shear);
-  return fmax(tension / limit, isnan(spec->shear) ? 0 : shear * spec->tensile / (limit * spec->shear));
+  const double shear_limit = isnan(spec->shear) ? INFINITY : spec->shear * (limit / spec->tensile);
+  return shear / shear_limit > tension / limit ? (SectionLoad){SHEAR, shear, shear_limit}
+                                               : (SectionLoad){TENSION, tension, limit};
 }
 
 static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
 {
-  return load_of(failure, f, slice, slot, bond, lane) > 1;
+  const SectionLoad load = section_load(failure, f, slice, slot, bond, lane);
+  return load.value > load.limit;
 }
 
-/** Returns the tension; if the shear is nearer to its strength, the shear times tensile strength over shear
- *  strength. */
 static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
-                      double *limit)
+                      double *limit, int *quantity)
 {
-  *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
-  return isinf(*limit) ? 0 : *limit * load_of(failure, f, slice, slot, bond, lane);
+  const SectionLoad load = section_load(failure, f, slice, slot, bond, lane);
+  *limit = load.limit;
+  *quantity = load.quantity;
+  return load.value;
 }
 
 /** Stresses change with every step: bonds are looked at in each. */
@@ -100,6 +110,6 @@ const Criterion criterion_critical_stress = {
     .suspect = suspect,
     .exceeds = exceeds,
     .measure = measure,
-    .quantity = "tension",
+    .quantities = {[TENSION] = "tension", [SHEAR] = "shear"},
     .power = 2,
 };

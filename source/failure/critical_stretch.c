@@ -149,13 +149,11 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
 }
 
 static double measure(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane,
-                      double *limit)
+                      double *limit, int *quantity)
 {
-  (void)slot;
-  const int64_t place = slice * SLICE + lane;
-  *limit = failure_limit(failure, place, bond->neighbour);
-  return deformed_length(f->particles, place, bond) / bond->length - 1 -
-         particles_free_strain(f->particles, place, bond->neighbour);
+  (void)slot, (void)quantity;
+  *limit = failure_limit(failure, slice * SLICE + lane, bond->neighbour);
+  return failure_stretch(f, slice * SLICE + lane, bond);
 }
 
 static double crack_energy(const CrackBlock *block, const Material *material, double limit, const double normal[3])
@@ -174,6 +172,6 @@ const Criterion criterion_critical_stretch = {
     .suspect = suspect,
     .exceeds = exceeds,
     .measure = measure,
-    .quantity = "stretch",
+    .quantities = {"stretch"},
     .power = 2,
 };

@@ -1,5 +1,6 @@
 #include "failure/failure.h"
 
+#include <math.h>
 #include <string.h>
 
 #define CRITERION(name) extern const Criterion criterion_##name;
@@ -32,6 +33,16 @@ bool failure_is_longer(const Family *f, int64_t place, const Bond *bond)
     along += eta * (2 * bond->xi[k] + eta);
   }
   return along > natural * (2 + natural) * bond->length * bond->length;
+}
+
+double failure_stretch(const Family *f, int64_t place, const Bond *bond)
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double *u = f->particles->displacement[k], y = bond->xi[k] + u[bond->neighbour] - u[place];
+    square += y * y;
+  }
+  return sqrt(square) / bond->length - 1 - particles_free_strain(f->particles, place, bond->neighbour);
 }
 
 static const char *criterion_word(int k)

@@ -82,11 +82,12 @@ typedef struct Criterion {
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
                   int lane);
   /** Returns the value of a bond and the limit with which the criterion compares it, both in `dimension`.
-   *  @param[out] limit  infinite for bonds that never break. NULL: unknown */
+   *  @param[out] limit     infinite for bonds that never break. NULL: unknown
+   *  @param[in,out] quantity  0 before; index in `quantities` of the value */
   double (*measure)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
-                    int lane, double *limit);
-  const char *quantity; /* name of the value */
-  int power;            /* exponent of the value in the energy of a bond */
+                    int lane, double *limit, int *quantity);
+  const char *quantities[3]; /* names of values, NULL after the last; at most two */
+  int power;                 /* exponent of the value in the energy of a bond */
   /** Returns the energy of a bond at its limit. NULL: unknown. */
   double (*energy_at_limit)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, int lane);
 } Criterion;
@@ -128,6 +129,9 @@ static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
   double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
   return (one < other ? one : other) * (1 + failure->beyond);
 }
+
+/** Returns the stretch of a bond less its free strain. */
+double failure_stretch(const Family *family, int64_t place, const Bond *bond);
 
 /** Whether a bond is longer than where nothing hinders it. */
 bool failure_is_longer(const Family *family, int64_t place, const Bond *bond);

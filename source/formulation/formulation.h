@@ -38,6 +38,10 @@ extern const char *const strain_measure_words[];
 
 enum { CARRY = 9 };
 
+/** Evenness of the members of a point (FormulationType.evenness) at which they give no strain; below, the inverse of
+ *  their second moment would multiply round-off by more than a million. */
+#define FORMULATION_LEAST_EVENNESS 1e-6
+
 /** What a formulation works on; borrowed. Particles have rows of rotations if any formulation of the body wants them. */
 typedef struct FormulationParts {
   const void *keys; /* of its own section; NULL: those of another formulation stand in the deck, and defaults count */
@@ -323,8 +327,10 @@ struct FormulationType {
   const ControlType *control; /* of zero-energy modes; NULL: none is needed */
   /** Why a free body would gain energy as it moves unless its shortest waves are damped, or NULL where it would not. NULL: it never would. */
   const char *(*flutters)(const void *formulation);
-  /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */
-  bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
+  /** Returns the evenness of the particles that give an intact bond its strain: the smallest eigenvalue of their second
+   *  moment over the largest, by the bonds that are left. A bond at FORMULATION_LEAST_EVENNESS or below carries nothing
+   *  and breaks with the others. NULL: all bonds carry. */
+  double (*evenness)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Young's modulus that the lattice of a block shows along one of its axes, over that of its material; NaN: it resists nothing there, or fills none.
    *  NULL: they are the same. */
   double (*shown_young)(const void *formulation, int block, int axis);

@@ -294,7 +294,7 @@ const FormulationType formulation_hybrid = {
     .even_stress = hybrid_even_stress,
     .former_bonds = former_bonds,
     .flutters = flutters,
-    .can_carry = hybrid_can_carry,
+    .evenness = hybrid_evenness,
     .describe = describe,
     .bytes = hybrid_bytes,
 };

@@ -212,8 +212,9 @@ size_t hybrid_bytes(const void *formulation);
 HybridRow hybrid_row(const Hybrid *hybrid, int64_t row);
 void hybrid_view(const Hybrid *hybrid, int64_t row, HybridView *view);
 void hybrid_view_at(const Hybrid *hybrid, const HybridRow *at, HybridView *view);
-/** The same by the bonds that are intact now. @return false: it carries nothing */
-bool hybrid_view_anew(const Hybrid *hybrid, const HybridRow *at, HybridView *view);
+/** The same by the bonds that are intact now. @return evenness of the members; at FORMULATION_LEAST_EVENNESS and below
+ *  the row carries nothing */
+double hybrid_view_anew(const Hybrid *hybrid, const HybridRow *at, HybridView *view);
 /** Volume of a point that carries something; 0 of others. */
 double hybrid_volume(const Hybrid *hybrid, const HybridRow *at);
 
@@ -273,8 +274,9 @@ typedef double HybridShape[6];
 void hybrid_section_of(const Hybrid *h, const HybridShape *shape, const HybridRow *at, double area[3], double *volume);
 /** Vectors of members from their distances from the middle, each times its weight, and the moment of these distances: the fit, and what the bond itself
  *  says, made exact along it: g - own (g . xi) xi / L^2, and own xi / L^2 of its two ends, which come first.
- *  @param[in,out] g  [count]. @return false where the members span no space */
-bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3]);
+ *  @param[in,out] g  [count]. @return evenness of the members (hybrid_invert), which span no space at
+ *  FORMULATION_LEAST_EVENNESS and below: the vectors are then not computed */
+double hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3]);
 
 /** Lattice vector of a slot of a slice: 0 is none, n + 1 is pattern n of the block. */
 static inline int hybrid_vector(const Hybrid *h, int block, int64_t slice, int64_t slot)
@@ -320,8 +322,9 @@ void hybrid_laminate_tangent(const Hybrid *h, const HybridLaminate *laminate, do
 double hybrid_laminate_free(const Hybrid *h, const int32_t *member);
 /** Inverts a symmetric tensor. In the plane, the function first sets the component across the plane to the mean of the
  *  two in the plane, and the shears across to 0.
- *  @return false if an eigenvalue is below 1e-6 of the largest: the tensor then gives no strain */
-bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
+ *  @return evenness: the smallest eigenvalue over the largest, 0 to 1. At FORMULATION_LEAST_EVENNESS and below the tensor
+ *          gives no strain, and the inverse is not computed */
+double hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
 
 /** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */
 int hybrid_lattices_create(Hybrid *h, Error *error);
@@ -336,8 +339,8 @@ size_t hybrid_stripes_bytes(const Hybrid *h);
 void hybrid_groups_renew(Hybrid *h, int64_t slice);
 void hybrid_lattices_destroy(Hybrid *h);
 size_t hybrid_lattices_bytes(const Hybrid *h);
-/** Members of a lane of an owned slot by the bonds that are intact now, in the order of a geometry's. @return false: it carries nothing */
-bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view);
+/** Members of a lane of an owned slot by the bonds that are intact now, in the order of a geometry's. @return as hybrid_view_anew */
+double hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view);
 
 /** Strain and stress of a row as they were found last; where points keep none, those of displacements u less `time`
  *  times the velocities held. */
@@ -362,8 +365,8 @@ int64_t hybrid_deform(void *formulation, const Sweep *sweep);
 int64_t hybrid_respond(void *formulation, const Sweep *sweep);
 int64_t hybrid_resist(void *formulation, const Sweep *sweep);
 
-/** As FormulationType describes it: whether the members of a bond's points still span space. */
-bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane);
+/** As FormulationType describes it. */
+double hybrid_evenness(const void *formulation, int64_t slice, int64_t slot, int lane);
 
 /** Share of a point that lies inside the body: each end of its bond has half, and images have none; of a bond to another formulation all is with its own end. */
 double hybrid_share_inside(const Hybrid *h, const HybridView *view);

@@ -86,7 +86,7 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
   if (view.idle) return 0;
   const PointInStep point = look(h, row, &view, time);
   /* What it had received until the end of the step: works summed by the trapezium rule find it gone there. */
-  if (!hybrid_view_anew(h, at, &left))
+  if (!(hybrid_view_anew(h, at, &left) > FORMULATION_LEAST_EVENNESS))
     return view.volume * (density(h, row, &view, time) + work(h, point.stress, point.was, point.now) / 2);
   double after[9], before[9] = {0}, strain[6], first[6], stress[6];
   hybrid_gradient(&left, p->displacement, after);

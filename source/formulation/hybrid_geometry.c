@@ -14,9 +14,8 @@ static bool sees(const Hybrid *h, int32_t a, int32_t b)
   return family_joins(h->family, a, b);
 }
 
-bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6])
+double hybrid_invert(const Hybrid *h, double m[6], double inverse[6])
 {
-  const double flat = 1e-6;
   double value[3], vector[9], largest = 0, least = INFINITY;
   if (h->dimensions == 2) {
     m[ZZ] = (m[XX] + m[YY]) / 2;
@@ -27,9 +26,9 @@ bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6])
     largest = fmax(largest, value[k]);
     least = fmin(least, value[k]);
   }
-  if (!(least > flat * largest)) return false;
-  tensor_inverse(m, inverse);
-  return true;
+  const double evenness = largest > 0 ? fmax(0, least / largest) : 0;
+  if (evenness > FORMULATION_LEAST_EVENNESS) tensor_inverse(m, inverse);
+  return evenness;
 }
 
 static void times(const double a[6], const double v[3], double to[3])
@@ -40,10 +39,11 @@ static void times(const double a[6], const double v[3], double to[3])
   }
 }
 
-bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3])
+double hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3])
 {
   double inverse[6], square = 0;
-  if (!hybrid_invert(h, moment, inverse)) return false;
+  const double evenness = hybrid_invert(h, moment, inverse);
+  if (!(evenness > FORMULATION_LEAST_EVENNESS)) return evenness;
   for (int k = 0; k < 3; ++k) square += xi[k] * xi[k];
   for (int n = 0; n < count; ++n) {
     const double from[3] = {g[n][0], g[n][1], g[n][2]};
@@ -52,21 +52,22 @@ bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3]
     for (int k = 0; k < 3; ++k) along -= g[n][k] * xi[k];
     for (int k = 0; k < 3; ++k) g[n][k] += h->own * along * xi[k] / square;
   }
-  return true;
+  return evenness;
 }
 
 /** Computes the vectors g of the members of a listed row for the bonds that are intact now.
  *  @param[out] laminate  laminate of the row; NULL: the row is no laminate
  *  @param[out] fit       NULL, or instead of g the inverse moment and the mean position less that of the owner
- *  @return false if no vectors exist; the point then carries nothing */
-static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate, double fit[9])
+ *  @return evenness of the members (hybrid_invert); no vectors exist at FORMULATION_LEAST_EVENNESS and below, where the
+ *          point carries nothing */
+static double weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminate *laminate, double fit[9])
 {
   const Particles *p = h->particles;
   const int32_t *member = h->member + h->first[number];
   const int count = (int)(h->first[number + 1] - h->first[number]);
   double *weight = h->tried_weight, (*from)[3] = h->tried_from;
   memset(g, 0, sizeof *g * (size_t)count);
-  if (h->volume[number] == 0 || !sees(h, member[0], member[1])) return false;
+  if (h->volume[number] == 0 || !sees(h, member[0], member[1])) return 0;
   double middle[3] = {0}, whole = 0, m[6] = {0}, xi[3];
   for (int n = 0; n < count; ++n) {
     const bool present = sees(h, member[n], member[0]) && sees(h, member[n], member[1]);
@@ -91,13 +92,14 @@ static bool weigh(const Hybrid *h, int64_t number, double (*g)[3], HybridLaminat
     memcpy(fit + 6, middle, sizeof middle);
     return hybrid_invert(h, m, fit);
   }
-  if (!hybrid_fit(h, count, m, xi, g)) {
+  const double evenness = hybrid_fit(h, count, m, xi, g);
+  if (!(evenness > FORMULATION_LEAST_EVENNESS)) {
     memset(g, 0, sizeof *g * (size_t)count);
-    return false;
+    return evenness;
   }
   const HybridMembers of = {count, member, weight, (const double(*)[3])from};
   if (laminate) hybrid_laminate_weigh(h, &of, laminate, g);
-  return true;
+  return evenness;
 }
 
 static HybridLaminate *laminate_of(Hybrid *h, int64_t number)
@@ -109,9 +111,10 @@ static HybridLaminate *laminate_of(Hybrid *h, int64_t number)
 static bool measure_row(Hybrid *h, int64_t slice, int64_t number)
 {
   double fit[9];
-  if (!h->moments) return weigh(h, number, h->g + h->first[number], laminate_of(h, number), NULL);
+  if (!h->moments)
+    return weigh(h, number, h->g + h->first[number], laminate_of(h, number), NULL) > FORMULATION_LEAST_EVENNESS;
   if (h->volume[number] != 0) hybrid_moments_order(h, number);
-  const bool carries = weigh(h, number, h->tried, NULL, fit);
+  const bool carries = weigh(h, number, h->tried, NULL, fit) > FORMULATION_LEAST_EVENNESS;
   hybrid_moments_set(h, slice, number, carries ? fit : NULL, h->tried_weight);
   return carries;
 }
@@ -132,10 +135,10 @@ void hybrid_renew(void *formulation, int64_t slice)
 
 /* ---- by the bonds that are intact now ---- */
 
-bool hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
+double hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
 {
   hybrid_view_at(h, at, view);
-  if (at->listed < 0) return at->geometry >= 0 && hybrid_group_weigh(h, at, view);
+  if (at->listed < 0) return at->geometry >= 0 ? hybrid_group_weigh(h, at, view) : 0;
   view->g = (const double(*)[3])h->tried;
   view->count = (int)(h->first[at->listed + 1] - h->first[at->listed]);
   if (view->laminate) {
@@ -145,14 +148,15 @@ bool hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
   return weigh(h, at->listed, h->tried, view->laminate ? &view->tried_laminate : NULL, NULL);
 }
 
-bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane)
+double hybrid_evenness(const void *formulation, int64_t slice, int64_t slot, int lane)
 {
   const Hybrid *h = formulation;
   int64_t rows[2];
   HybridView view;
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
   const HybridRow at = hybrid_row(h, rows[0]);
-  return hybrid_view_anew(h, &at, &view) || view.volume == 0;
+  const double evenness = hybrid_view_anew(h, &at, &view);
+  return view.volume == 0 ? 1 : evenness;
 }
 
 /* ---- as the body begins ---- */
@@ -170,7 +174,7 @@ static bool find_shape(const Hybrid *h, int32_t place, double inverse[6])
     for (int c = 0; c < 6; ++c)
       k[c] += bond.weight / bond.length * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
   }
-  return hybrid_invert(h, k, inverse);
+  return hybrid_invert(h, k, inverse) > FORMULATION_LEAST_EVENNESS;
 }
 
 typedef struct Neighbours {

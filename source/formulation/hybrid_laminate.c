@@ -216,7 +216,7 @@ static bool laminate_fit_kink(const Hybrid *h, const HybridMembers *of, const Hy
     for (int k = 0; k < 6; ++k) m[k] += of->weight[n] * apart[symmetric_row[k]] * apart[symmetric_column[k]];
     for (int k = 0; k < 3; ++k) product[k] += of->weight[n] * laminate_kink(l, of->from[n]) * apart[k];
   }
-  if (!hybrid_invert(h, m, inverse)) return false;
+  if (!(hybrid_invert(h, m, inverse) > FORMULATION_LEAST_EVENNESS)) return false;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) kink->slope[i] += inverse[symmetric_place[3 * i + j]] * product[j];
   for (int n = 0; n < of->count; ++n)

@@ -233,8 +233,8 @@ static bool make_room(HybridTable *t, int members)
   return 2 * (t->count + 1) <= t->buckets || make_buckets(t, t->buckets ? 2 * t->buckets : 4 * FIRST_ROOM);
 }
 
-/** Vectors g of members, opposite ones side by side where each has one. @return false: they span no space */
-static bool weigh(const Hybrid *h, Members *m)
+/** Vectors g of members, opposite ones side by side where each has one. @return evenness of the members (hybrid_invert) */
+static double weigh(const Hybrid *h, Members *m)
 {
   const HybridLattice *lattice = &h->lattice[m->block];
   uint16_t opposite[HYBRID_NEAR] = {0};
@@ -270,10 +270,11 @@ static bool weigh(const Hybrid *h, Members *m)
     for (int k = 0; k < 3; ++k) m->g[n][k] -= middle[k];
     for (int k = 0; k < 6; ++k) moment[k] += m->g[n][symmetric_row[k]] * m->g[n][symmetric_column[k]];
   }
-  if (!hybrid_fit(h, count, moment, xi, m->g)) return false;
+  const double evenness = hybrid_fit(h, count, moment, xi, m->g);
+  if (!(evenness > FORMULATION_LEAST_EVENNESS)) return evenness;
   for (int n = 0; n + 1 < count && m->mirrored; n += 2)
     for (int k = 0; k < 3; ++k) m->g[n + 1][k] = -m->g[n][k];
-  return true;
+  return evenness;
 }
 
 /** The geometry with these members and this section. @return its number, or -1: there is no memory */
@@ -292,7 +293,7 @@ static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volum
       if (!memcmp(found->area, area, sizeof found->area)) return n;
       alike = n;
     }
-    if (!m->count || alike >= 0 || weigh(h, m)) break;
+    if (!m->count || alike >= 0 || weigh(h, m) > FORMULATION_LEAST_EVENNESS) break;
     m->count = 0;
   }
   if (!make_room(t, m->count)) return -1;
@@ -435,7 +436,7 @@ static void take_lane(Members *m, int count, const uint16_t *key, const uint8_t 
     if (lanes[n] >> lane & 1) m->key[m->count++] = key[n];
 }
 
-bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
+double hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
 {
   Members m = {.block = h->particles->block[at->slice]};
   uint16_t key[HYBRID_NEAR];
@@ -445,7 +446,8 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
   view->count = m.count;
   view->member = view->near;
   view->g = (const double(*)[3])view->tried;
-  if (!m.count || !weigh(h, &m)) return false;
+  const double evenness = m.count ? weigh(h, &m) : 0;
+  if (!(evenness > FORMULATION_LEAST_EVENNESS)) return evenness;
   for (int n = 0; n < m.count; ++n) {
     const int64_t slot = h->family->first[at->slice];
     int64_t to = slot;
@@ -453,7 +455,7 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
     view->near[n] = (int32_t)((m.near[n] ? family_base(h->family, at->slice, to) : at->slice * SLICE) + at->lane);
     memcpy(view->tried[n], m.g[n], sizeof m.g[n]);
   }
-  return true;
+  return evenness;
 }
 
 /** Gives the eight bonds of an owned slot their geometries. @return false: there is no memory, and they stay as they were */

@@ -109,7 +109,7 @@ static int write_states(breccia_model *model, const char *folder, const Modes *m
       held[k] = d->particles->displacement[k];
       d->particles->displacement[k] = shape;
     }
-    status = result_file_write(file, d, n + 1, n + 1, error);
+    status = result_file_write(file, d, &(ResultMoment){.step = n + 1, .time = n + 1}, error);
     for (int k = 0; k < 3; ++k) d->particles->displacement[k] = held[k];
   }
   if (!status) status = result_file_show(file, error);

@@ -7,7 +7,9 @@
 #include "model/deck_layout.h"
 #include "model/element_deck.h"
 #include "model/host.h"
+#include "results/broken_bonds.h"
 #include "results/fields.h"
+#include "results/particle_columns.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -172,6 +174,48 @@ static void add_opensees(const char *answer, Text *page)
   }
 }
 
+/** Adds a row of a table of columns: name, unit, meaning. */
+static void add_column(const char *name, const char *dimension, const char *about, Text *page)
+{
+  text_add(page, "| `%s` | %s | %s |\n", name, dimension, about);
+}
+
+/** Adds the reference of what result files hold besides fields. */
+static void add_result_file(Text *page)
+{
+  text_add(page, "\n## Result files\n\n`results.vtkhdf` is an HDF5 file. Its group `VTKHDF` holds reference positions "
+                 "(`Points`) and the fields of each state (`PointData`), for ParaView. Its group `Breccia` holds the "
+                 "following. Units are those of the deck; attributes name them.\n\nOf each particle, in the order of "
+                 "`Points`; an index counts from 0 in the attribute `names`:\n\n| dataset | dimension | meaning |\n"
+                 "|---|---|---|\n");
+  for (int k = 0; particle_column_at(k); ++k) {
+    const ParticleColumn *column = particle_column_at(k);
+    add_column(column->name, column->dimension, column->about, page);
+  }
+  text_add(page,
+           "\n`Selections/NAME` lists the rows of the particles of each named selection of the deck. `Stages` has the "
+           "stage of each state, an index in its attribute `names`.\n\nOf each broken bond, in the order in which they "
+           "broke: `BrokenBonds` has the step and the rows of both particles, and `BrokenBondReasons` these "
+           "columns:\n\n| column | dimension | meaning |\n|---|---|---|\n");
+  for (int k = 0; reason_column_at(k)->name; ++k) {
+    const ReasonColumn *column = reason_column_at(k);
+    add_column(column->name, column->dimension, column->about, page);
+  }
+  text_add(page, "\nIts attributes are lists with `;` between their words: `columns` and their `units`, `causes` and "
+                 "their `criteria`, `quantities` and their `quantity units`, and `materials`.\n\n"
+                 "| cause | criterion | value | meaning |\n|---|---|---|---|\n");
+  for (int k = 0; k < BREAK_CAUSES; ++k) {
+    const BreakCauseType *cause = &break_causes[k];
+    text_add(page, "| `%s` | %s | ", cause->word, cause->criterion ? cause->criterion : "that of `failure`");
+    if (cause->quantity) text_add(page, "%s", cause->quantity);
+    for (int c = 0; !cause->quantity && criterion_at(c); ++c) {
+      const char *const *quantity = criterion_at(c)->quantities;
+      for (int q = 0; quantity[q]; ++q) text_add(page, "%s%s", c || q ? ", " : "", quantity[q]);
+    }
+    text_add(page, " | %s |\n", cause->about);
+  }
+}
+
 static void add_deck(Text *page, bool schema)
 {
   int count;
@@ -190,6 +234,7 @@ static void add_deck(Text *page, bool schema)
     for (int c = 0; c < f->components; ++c) text_add(page, " %s", f->component_names ? f->component_names[c] : "");
     text_add(page, " | %s |\n", f->about);
   }
+  add_result_file(page);
   free(tables);
 }
 

@@ -56,7 +56,9 @@ static int write_results(Run *run, Error *error)
   int status = domain_observe(&model->domain, error);
   if (!status) {
     update_peaks(model);
-    status = result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
+    const Clock *clock = &model->solver.clock;
+    const ResultMoment moment = {.step = clock->step, .time = clock->time, .stage = clock->stage};
+    status = result_file_write(run->results, &model->domain, &moment, error);
     domain_stop_observing(&model->domain);
   }
   run->unwritten |= status != 0;
@@ -270,21 +272,27 @@ static int check_states(const Run *run, Error *error)
 static int open_files(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  const ResultNames names = {.fields = run->names.items,
+  Text stages = {0};
+  char stage[64];
+  for (int64_t k = 0; k < model->solver.clock.stages; ++k)
+    text_add(&stages, "%s%s", k ? ";" : "", solver_stage_name(&model->solver, k, stage, sizeof stage));
+  const ResultNames names = {.stages = text_words(&stages),
+                             .selections = &model->spec->selections,
+                             .reader = &model->reader,
+                             .fields = run->names.items,
                              .count = run->names.count,
                              .single = model->spec->results->precision == PRECISION_SINGLE,
                              .deck = text_words(&model->deck)};
   int status = refuse_links(run, error);
   if (!status) status = spare_files_of_others(run, error);
-  if (status) return status;
-  if (run->wish->restart) {
+  if (!status && run->wish->restart) {
     status = check_states(run, error);
     if (!status) status = run_log_check(run, error);
     if (!status) status = watches_check(model->watches, run->wish->folder, model->solver.clock.step, error);
     if (!status) /* all can be gone on from: what lies behind the checkpoint is cut off now */
       status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                   &names, model->last_due, error);
-  } else {
+  } else if (!status) {
     model->next_due = 0;
     model->last_due = -1;
     model->states_due = 0;
@@ -294,6 +302,7 @@ static int open_files(Run *run, Error *error)
       status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                   &names, error);
   }
+  text_free(&stages);
   if (!status) status = write_deck(run, error);
   if (!status) status = watches_open(model->watches, run->wish->folder, model->units, run->wish->restart != 0, error);
   if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)

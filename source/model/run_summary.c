@@ -48,20 +48,23 @@ static void add_origin(const breccia_model *model, Text *t)
   text_add(t, "},\n");
 }
 
-/** Returns the bond that broke first; NULL if none did. @param[out] middle  midpoint of the bond inside the body */
+/** Returns the first broken bond of the body, layers outside of supports left out; NULL: none.
+ *  @param[out] middle  midpoint of the bond inside the body */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
-  if (!d->broken_count) return NULL;
-  const BrokenBond *bond = &d->broken[0];
-  domain_bond_middle(d, (const int32_t[]){bond->a, bond->b}, middle);
-  return bond;
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    const BrokenBond *bond = &d->broken[n];
+    if (domain_bond_outside(d, bond)) continue;
+    domain_bond_middle(d, (const int32_t[]){bond->a, bond->b}, middle);
+    return bond;
+  }
+  return NULL;
 }
 
 /** Adds the first broken bond with its cause, or null. */
 static void add_first_broken(const breccia_model *model, Text *text)
 {
   const Domain *d = &model->domain;
-  const Criterion *criterion = d->failure.criterion;
   double x[3];
   char unit[64] = "";
   const BrokenBond *first = first_broken(d, x);
@@ -72,27 +75,39 @@ static void add_first_broken(const breccia_model *model, Text *text)
   text_add(text,
            "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, "
            "%.10g, %.10g], \"cause\": \"%s\", ",
-           (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2], break_cause_word(first->cause));
-  if (isnan(first->value)) {
-    text_add(text, "\"value\": null, \"limit\": null, \"unit\": \"\"},\n");
-    return;
-  }
-  if (criterion->dimension) units_name(model->units, dimension_find(criterion->dimension), unit, sizeof unit);
-  text_add(text, "\"value\": %.10g, \"limit\": %.10g, \"unit\": \"%s\"},\n", first->value, first->limit, unit);
+           (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2], break_causes[first->cause].word);
+  const char *quantity = domain_break_quantity(d, first->cause, first->quantity);
+  units_name(model->units, dimension_find(domain_break_dimension(d, first->cause)), unit, sizeof unit);
+  text_add(text, "\"criterion\": \"%s\", \"material\": ", domain_break_criterion(d, first->cause));
+  text_add_json(text, d->materials[first->material].name);
+  text_add(text, ", \"quantity\": \"%s\", ", quantity ? quantity : "");
+  add_number(text, "value", first->value);
+  text_add(text, ", ");
+  add_number(text, "limit", first->limit);
+  text_add(text, ", \"unit\": \"%s\"},\n", unit);
+}
+
+/** Adds the number of broken bonds of the body by cause, and that of their images outside of supports. */
+static void add_causes(const Domain *d, Text *text)
+{
+  int64_t counts[BREAK_CAUSES];
+  const int64_t outside = domain_count_broken(d, counts);
+  text_add(text, "  \"broken_bonds_by_cause\": {");
+  for (int k = 0; k < BREAK_CAUSES; ++k) text_add(text, "\"%s\": %lld, ", break_causes[k].word, (long long)counts[k]);
+  text_add(text, "\"images\": %lld},\n", (long long)outside);
 }
 
 /** Adds the number of bonds that broke for causes other than the failure criterion, if there are any. */
 static void add_other_causes(const Domain *d, const char *folder, Text *text)
 {
-  int64_t counts[BREAK_CAUSES] = {0};
-  for (int64_t n = 0; n < d->broken_count; ++n) ++counts[d->broken[n].cause];
-  if (counts[BREAK_LAW])
-    text_add(text, "%lld bonds broke because the law of their point, or of an end, found no stress\n",
-             (long long)counts[BREAK_LAW]);
-  if (counts[BREAK_ISOLATED])
-    text_add(text, "%lld bonds broke because too few bonds were left at one of their ends\n",
-             (long long)counts[BREAK_ISOLATED]);
-  if (counts[BREAK_LAW] || counts[BREAK_ISOLATED]) text_add(text, "'breccia why %s' lists them\n", folder);
+  int64_t counts[BREAK_CAUSES], others = 0;
+  domain_count_broken(d, counts);
+  for (int k = 0; k < BREAK_CAUSES; ++k) {
+    if (!break_causes[k].criterion || !counts[k]) continue;
+    text_add(text, "%lld bonds broke %s\n", (long long)counts[k], break_causes[k].count);
+    others += counts[k];
+  }
+  if (others) text_add(text, "'breccia why %s' lists them\n", folder);
 }
 
 /** Increments that are not followed, but jumped over. */
@@ -248,7 +263,9 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
   add_first_broken(model, &t);
-  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
+  text_add(&t, "  \"broken_bonds\": %lld,\n", (long long)d->broken_count);
+  add_causes(d, &t);
+  text_add(&t, "  \"energy\": {");
   const struct {
     const char *key;
     double value;

@@ -7,24 +7,29 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Adds the number of bonds that broke from each cause. */
+/** Adds the number of bonds of the body that broke from each cause, and that of their images. */
 static void why_count(const BondReasons *of, Text *text)
 {
-  int64_t counts[BREAK_CAUSES] = {0};
-  for (int64_t k = 0; k < of->count; ++k) ++counts[of->bonds[k].cause];
-  text_add(text, "%lld bond%s broke", (long long)of->count, of->count == 1 ? "" : "s");
-  const char *before = ": ";
-  if (counts[BREAK_LIMIT]) {
-    text_add(text, "%s%lld exceeded the limit of '%s'", before, (long long)counts[BREAK_LIMIT], of->criterion);
+  int64_t counts[BREAK_CAUSES] = {0}, outside = 0;
+  const char *criterion[BREAK_CAUSES] = {NULL}, *before = ": ";
+  for (int64_t k = 0; k < of->count; ++k) {
+    const BondReason *bond = &of->bonds[k];
+    outside += bond->is_outside;
+    counts[bond->cause] += !bond->is_outside;
+    criterion[bond->cause] = bond->criterion;
+  }
+  const int64_t inside = of->count - outside;
+  text_add(text, "%lld bond%s broke", (long long)inside, inside == 1 ? "" : "s");
+  for (int k = 0; k < BREAK_CAUSES; ++k) {
+    if (!counts[k]) continue;
+    text_add(text, "%s%lld %s", before, (long long)counts[k], break_causes[k].count);
+    if (!break_causes[k].criterion) text_add(text, " '%s'", criterion[k]);
     before = ", ";
   }
-  if (counts[BREAK_LAW]) {
-    text_add(text, "%s%lld lost a material point whose law found no stress", before, (long long)counts[BREAK_LAW]);
-    before = ", ";
-  }
-  if (counts[BREAK_ISOLATED])
-    text_add(text, "%s%lld belonged to a particle with too few bonds left", before, (long long)counts[BREAK_ISOLATED]);
   text_add(text, "\n");
+  if (outside)
+    text_add(text, "%lld images of them broke in the layers outside of supports and are not listed\n",
+             (long long)outside);
 }
 
 /** Adds the coordinates of a position with their unit. */
@@ -36,21 +41,15 @@ static void why_position(const ResultView *view, const double position[3], Text 
 }
 
 /** Adds a line for one bond with its particles, position and reason. */
-static void why_bond(const ResultView *view, const BondReasons *of, const BondReason *bond, Text *text)
+static void why_bond(const ResultView *view, const BondReason *bond, Text *text)
 {
   text_add(text, "step %lld, time %.6g %s, particles %lld and %lld", (long long)bond->step, bond->time, view->time_unit,
            (long long)bond->particles[0], (long long)bond->particles[1]);
   why_position(view, bond->position, text);
-  const char *space = *of->unit ? " " : "";
-  if (bond->cause == BREAK_LIMIT && isnan(bond->value))
-    text_add(text, "'%s'\n", of->criterion);
-  else if (bond->cause == BREAK_LIMIT)
-    text_add(text, "%s %.6g%s%s, limit %.6g%s%s\n", of->quantity, bond->value, space, of->unit, bond->limit, space,
-             of->unit);
-  else
-    text_add(text, "%s\n",
-             bond->cause == BREAK_LAW ? "the law of its point, or of an end, found no stress"
-                                      : "too few bonds were left at one of its ends");
+  const char *space = *bond->unit ? " " : "";
+  if (!isnan(bond->value)) text_add(text, "%s %.6g%s%s", bond->quantity, bond->value, space, bond->unit);
+  if (!isnan(bond->limit)) text_add(text, ", limit %.6g%s%s", bond->limit, space, bond->unit);
+  text_add(text, "%s(%s, material '%s')\n", isnan(bond->value) ? "" : " ", bond->criterion, bond->material);
 }
 
 /** Adds a line for a damaged bond or material point. */
@@ -84,7 +83,7 @@ static int why_one(const ResultView *view, const BondReasons *of, const long lon
     const int64_t *particles = of->bonds[k].particles;
     if ((particles[0] != ends[0] || particles[1] != ends[1]) && (particles[0] != ends[1] || particles[1] != ends[0]))
       continue;
-    why_bond(view, of, &of->bonds[k], text);
+    why_bond(view, &of->bonds[k], text);
     return BRECCIA_OK;
   }
   return error_add(error, BRECCIA_USER_ERROR,
@@ -113,7 +112,12 @@ int breccia_explain_breaks(const char *result, const breccia_why *given, char **
     if (!status && wish.one_bond) status = why_one(&view, &of, wish.bond, &text, error);
     if (!status && !wish.one_bond) {
       why_count(&of, &text);
-      for (int64_t k = 0; k < of.count && k < wish.first; ++k) why_bond(&view, &of, &of.bonds[k], &text);
+      int64_t listed = 0;
+      for (int64_t k = 0; k < of.count && listed < wish.first; ++k) {
+        if (of.bonds[k].is_outside) continue;
+        why_bond(&view, &of.bonds[k], &text);
+        ++listed;
+      }
       why_softened(&view, &softened, wish.first, &text);
     }
     broken_bonds_destroy(&of);

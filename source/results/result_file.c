@@ -11,6 +11,7 @@
 #include "results/dataset.h"
 #include "results/hdf5_file.h"
 #include "results/journal.h"
+#include "results/particle_columns.h"
 #include "results/result_view.h"
 #include "results/softened_bonds.h"
 #include "results/xdmf.h"
@@ -24,7 +25,8 @@
 /* Values go to the file by so many chunks at a time: large bodies have no memory for all of them. */
 enum { CHUNK_BYTES = 1 << 18, CHUNKS_AT_ONCE = 16, ROWS_AT_ONCE = 1 << 16 };
 
-static const char deck_checksum[] = "deck checksum"; /* attribute of the group Breccia */
+static const char deck_checksum[] = "deck checksum", /* attribute of the group Breccia */
+    stages_name[] = "Stages";                        /* [states] stage of each state, from 0 */
 
 typedef struct Column {
   char name[64], unit[64];
@@ -170,57 +172,59 @@ static int create_sets(hid_t root, const ResultFile *file)
   return bad | (H5Gclose(offsets) < 0) | (H5Gclose(steps) < 0) | (H5Gclose(data) < 0);
 }
 
-/** Positions, spacings and lattices of particles first .. last - 1, and whether they stand outside the body. */
-typedef struct Geometry {
-  double position[3 * ROWS_AT_ONCE], spacing[ROWS_AT_ONCE];
-  uint8_t lattice[ROWS_AT_ONCE], outside[ROWS_AT_ONCE];
-} Geometry;
-
-static int write_particles(hid_t root, hid_t own, const Domain *d, Geometry *g, int64_t first, int64_t last)
+/** Writes reference positions. */
+static int write_positions(hid_t root, const Particles *p)
 {
-  const Particles *p = d->particles;
-  for (int64_t n = first; n < last; ++n) {
-    const int64_t place = p->place_of[n], row = n - first;
-    const Lattice *lattice = &d->body.lattices[p->block[place / SLICE]];
-    for (int k = 0; k < 3; ++k) g->position[3 * row + k] = p->position[k][place];
-    g->spacing[row] = lattice->spacing;
-    g->lattice[row] = 0;
-    while (strcmp(lattice_word(g->lattice[row]), lattice->type->name)) ++g->lattice[row];
-    g->outside[row] = body_outside(&d->body, n);
+  double(*position)[3] = memory_plain(ROWS_AT_ONCE, sizeof *position);
+  int bad = !position || dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
+  for (int64_t first = 0; first < p->count && !bad; first += ROWS_AT_ONCE) {
+    const int64_t rows = p->count - first < ROWS_AT_ONCE ? p->count - first : ROWS_AT_ONCE;
+    for (int64_t i = 0; i < rows; ++i)
+      for (int k = 0; k < 3; ++k) position[i][k] = p->position[k][p->place_of[first + i]];
+    bad = dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, (hsize_t)first, (hsize_t)rows, position);
   }
-  const hsize_t at = (hsize_t)first, rows = (hsize_t)(last - first);
-  int bad = dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, at, rows, g->position);
-  bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, at, rows, g->spacing);
-  if (d->body.margin_of) bad |= dataset_write(own, "Outside", H5T_NATIVE_UINT8, 1, at, rows, g->outside);
-  return bad | dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, at, rows, g->lattice);
+  free(position);
+  return bad;
 }
 
-static int write_geometry(hid_t root, const Domain *d, const Units *units)
+/** Writes the row numbers of the particles of each named selection that selects any. */
+static int write_selections(hid_t own, const ResultNames *names, const Body *body)
+{
+  hid_t group = H5Gcreate2(own, "Selections", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  int bad = group < 0;
+  for (int k = 0; names->selections && k < names->selections->count && !bad; ++k) {
+    const SectionHead *head = names->selections->items[k];
+    const Reference reference = {.name = head->name, .node = head->node};
+    Selection selection;
+    if (strchr(head->name, '/') || selection_create(&selection, body, names->reader, names->selections, &reference))
+      continue;
+    int64_t *rows = memory_plain((size_t)selection.count + 1, sizeof *rows);
+    for (int64_t n = 0; rows && n < selection.count; ++n) rows[n] = body->particles.number[selection.places[n]];
+    bad = !rows || dataset_create(group, head->name, H5T_STD_I64LE, 1, 1024) ||
+          dataset_write(group, head->name, H5T_NATIVE_INT64, 1, 0, (hsize_t)selection.count, rows);
+    free(rows);
+    selection_destroy(&selection);
+  }
+  return bad | (group >= 0 && H5Gclose(group) < 0);
+}
+
+static int write_geometry(hid_t root, const Domain *d, const Units *units, const ResultNames *names)
 {
   const Particles *p = d->particles;
-  Geometry *geometry = memory_plain(1, sizeof *geometry);
-  if (!geometry) return 1;
-  int bad = dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
+  int bad = write_positions(root, p);
   bad |= dataset_create(root, "NumberOfPoints", H5T_STD_I64LE, 1, 1);
   bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
   hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   int plane = d->body.dimensions < 3;
   bad |= attribute_text(own, ".", "version", BRECCIA_VERSION);
   bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
-  bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
   bad |= broken_bonds_create(own, d, units);
-  if (d->body.margin_of) bad |= dataset_create(own, "Outside", H5T_STD_U8LE, 1, 4096);
-  bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
-  for (int64_t first = 0; first < p->count && !bad; first += ROWS_AT_ONCE)
-    bad = write_particles(root, own, d, geometry, first,
-                          first + ROWS_AT_ONCE < p->count ? first + ROWS_AT_ONCE : p->count);
-  Text names = {0};
-  for (int k = 0; lattice_word(k); ++k) text_add(&names, "%s%s", k ? ";" : "", lattice_word(k));
-  bad |= attribute_text(own, "Lattice", "names", text_words(&names));
-  text_free(&names);
+  bad |= particle_columns_write(own, d, units);
+  bad |= write_selections(own, names, &d->body);
+  bad |= dataset_create(own, stages_name, H5T_STD_I64LE, 1, 64);
+  bad |= attribute_text(own, stages_name, "names", names->stages ? names->stages : "");
   bad |= H5Gclose(own) < 0;
   bad |= H5Fclose(file) < 0;
-  free(geometry);
   return bad;
 }
 
@@ -291,7 +295,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     int64_t version[2] = {2, 0};
     bad |= attribute_numbers(root, "Version", H5T_NATIVE_INT64, 2, version);
     bad |= attribute_text(root, ".", "Type", "PolyData");
-    bad |= write_geometry(root, d, units);
+    bad |= write_geometry(root, d, units, names);
     bad |= write_cells(root, file->particles);
     const hsize_t column[2] = {(hsize_t)file->particles, 1};
     bad |= dataset_view(h5.id, "/Breccia/Particles", h5.id, "/VTKHDF/Vertices/Connectivity", 0, 2, column);
@@ -407,7 +411,7 @@ static int create_state(hid_t h5, const ResultFile *file, int64_t k)
 }
 
 /** Adds the present state to the file that is open. */
-static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
+static int append(ResultFile *file, Hdf5File *h5, const Domain *d, int64_t stage)
 {
   hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
   double *values = memory_plain(2 * CHUNKS_AT_ONCE * CHUNK_BYTES, 1); /* twice: where chunks have single precision */
@@ -416,6 +420,7 @@ static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
   if (!values) h5->error = ENOMEM;
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad = bad || broken_bonds_write(own, d, file->broken_written);
+  bad = bad || dataset_write(own, stages_name, H5T_NATIVE_INT64, 1, (hsize_t)file->writes - 1, 1, &stage);
   bad = bad || bar_states_write(own, d, file->writes - 1);
   bad = bad || softened_bonds_write(own, d, file->writes - 1);
   bad = bad || create_state(h5->id, file, file->writes - 1);
@@ -451,10 +456,10 @@ static int show(ResultFile *file, Error *error)
   return BRECCIA_OK;
 }
 
-int result_file_write(ResultFile *file, const Domain *d, int64_t step, double time, Error *error)
+int result_file_write(ResultFile *file, const Domain *d, const ResultMoment *moment, Error *error)
 {
   if (file->lost) return BRECCIA_FAILURE; /* said when it was lost */
-  if (file->writes && file->steps[file->writes - 1] == step) return BRECCIA_OK;
+  if (file->writes && file->steps[file->writes - 1] == moment->step) return BRECCIA_OK;
   if (grow_times(file, error)) return BRECCIA_FAILURE;
   struct stat status;
   if (!file->hidden && stat(file->path, &status)) return give_up(file, strerror(errno), error);
@@ -465,11 +470,11 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
     if (cause) return give_up(file, regular_file_problem(cause), error);
     file->copy_seconds = clock_seconds() - file->copied_at;
   }
-  file->times[file->writes] = time;
-  file->steps[file->writes++] = step;
+  file->times[file->writes] = moment->time;
+  file->steps[file->writes++] = moment->step;
   Hdf5File h5;
   int bad = in_place ? hdf5_file_extend_in_place(&h5, file->path) : hdf5_file_extend(&h5, file->part);
-  bad = bad || append(file, &h5, d);
+  bad = bad || append(file, &h5, d, moment->stage);
   bad |= hdf5_file_close(&h5);
   if (bad) return give_up(file, hdf5_file_reason(&h5), error);
   file->broken_written = d->broken_count;
@@ -494,6 +499,7 @@ static int cut(ResultFile *file, Hdf5File *h5, const Domain *d)
                          (hsize_t)(file->writes * file->particles), 0, NULL);
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad |= broken_bonds_cut(own, file->broken_written);
+  bad |= dataset_write(own, stages_name, H5T_NATIVE_INT64, 1, (hsize_t)file->writes, 0, NULL);
   bad |= bar_states_cut(own, d, file->writes);
   bad |= softened_bonds_cut(own, file->writes);
   if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;

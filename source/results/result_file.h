@@ -8,6 +8,7 @@
 #ifndef BRECCIA_RESULTS_RESULT_FILE_H
 #define BRECCIA_RESULTS_RESULT_FILE_H
 
+#include "body/selection.h"
 #include "results/fields.h"
 
 enum { COPY_LIMIT = 256 << 20, SELDOM = 10 };
@@ -18,11 +19,21 @@ typedef struct ResultNames {
   const char *const *fields; /* of fields.c, or named history numbers */
   int count;
   bool single;
-  const char *deck; /* what is run; NULL where nothing will be taken up */
+  const char *deck;              /* what is run; NULL where nothing will be taken up */
+  const char *stages;            /* names of the stages of the run with ";" between them; NULL: none */
+  const SectionList *selections; /* named selections of the deck; NULL: none */
+  const DeckReader *reader;      /* of the deck; needed with selections */
   const double *
       frequencies; /* [frequency_count] in Hz, of modes of vibration that stand in place of states: the n-th at time and step n; NULL: of a run */
   int frequency_count;
 } ResultNames;
+
+/** Step, time and stage of a state. */
+typedef struct ResultMoment {
+  int64_t step;
+  double time;
+  int64_t stage; /* from 0 */
+} ResultMoment;
 
 /** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */
 int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
@@ -35,7 +46,7 @@ int result_file_resume(ResultFile **file, const char *folder, const Domain *doma
 double result_file_state_bytes(const Domain *domain, const ResultNames *names);
 /** Adds the present state. It may stand only in the copy at first; result_file_show shows it.
  *  @return BRECCIA_OK; BRECCIA_FAILURE after a line with the cause, and from then on without one: states are lost, and no more are added */
-int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
+int result_file_write(ResultFile *file, const Domain *domain, const ResultMoment *moment, Error *error);
 /** Puts all states into the file that others read. */
 int result_file_show(ResultFile *file, Error *error);
 void result_file_destroy(ResultFile **file);
