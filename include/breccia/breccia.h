@@ -82,7 +82,24 @@ typedef struct breccia_batch {
   /* Elongation of bonds by Poisson's effect of the elastic pressure across them [count], 0 or more. Filled for laws
    * with `takes_lateral`; NULL: none */
   const double *lateral;
+  /* Where the points stand, for laws with `takes_places`; NULL where they stand in no body (laboratory tests, checks of
+   * a law, material servers, bars). Particles are numbered by their rows in result files, from 0; a point in a layer
+   * outside of a support stands where its image inside does.
+   * particle: both ends of a bond; twice the same number for a point of a particle [2][count].
+   * position: in the reference configuration, of a bond its midpoint [3][count], in the deck's unit of length.
+   * direction: unit vector from particle[0] to particle[1] in the reference configuration [3][count]; NULL for points
+   * of particles. */
+  const int32_t *particle[2];
+  const double *position[3], *direction[3];
 } breccia_batch;
+
+/** One point of a body, as breccia_batch has many. */
+typedef struct breccia_place {
+  size_t size;
+  int32_t particle[2];
+  double position[3];
+  double direction[3]; /* 0 for points of particles */
+} breccia_place;
 
 /** How the deviator of an isotropic law flows, for formulations that have no strain to give it (ordinary peridynamics). */
 typedef struct breccia_deviator {
@@ -160,6 +177,11 @@ typedef struct breccia_law {
   /** Number, counted from 1, of the history value in which bonds of plane bodies find the confining pressure after each
    * step [stress], 0 or more: the smaller principal pressure in the plane. `update` copies it. 0: the law reads none. */
   int confined_history;
+  int takes_places; /* 1: `update` reads the members of breccia_batch that tell where points stand */
+  /** Writes the history of one point of a body that was never strained, by where it stands: called in the place of
+   *  `begin`, which is needed, too, for points in no body. As for `begin`, the same numbers at every call; they must
+   *  have a stress of 0 without strain. Not with `initial stress`. NULL: `begin` serves all points. */
+  void (*begin_point)(const void *constants, const breccia_place *place, double *history);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

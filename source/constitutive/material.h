@@ -89,6 +89,17 @@ bool material_can_share(const Material *material);
  *  @return BRECCIA_OK, or BRECCIA_USER_ERROR with the strength unchanged */
 int material_share_strength(Material *material, double share, char *reason, size_t size);
 
+/** Lets the members of a batch that tell where points stand begin with a later point. */
+static inline void batch_places_from(breccia_batch *batch, int first)
+{
+  for (int k = 0; k < 2; ++k)
+    if (batch->particle[k]) batch->particle[k] += first;
+  for (int k = 0; k < 3; ++k) {
+    if (batch->position[k]) batch->position[k] += first;
+    if (batch->direction[k]) batch->direction[k] += first;
+  }
+}
+
 /** Calls the law for a batch of points. An index that is no point of the batch stands for the first one.
  *  @return -1, or a point of the batch that could not be integrated */
 static inline int material_update(const Material *material, const breccia_batch *batch)

@@ -74,6 +74,16 @@ static void begin(const void *constants, double *history)
   if (c->base.law->begin) c->base.law->begin(c->base.constants, history);
 }
 
+static void begin_point(const void *constants, const breccia_place *place, double *history)
+{
+  const MinMax *c = constants;
+  history[c->base.history_values] = 0;
+  if (c->base.law->begin_point)
+    c->base.law->begin_point(c->base.constants, place, history);
+  else if (c->base.law->begin)
+    c->base.law->begin(c->base.constants, history);
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   const MinMax *c = constants;
@@ -89,18 +99,16 @@ static int update(const void *constants, const breccia_batch *batch)
       if (batch->tangent) batch->tangent[i] = 0;
       continue;
     }
-    const breccia_batch one = {.size = sizeof(breccia_batch),
-                               .count = 1,
-                               .strain = {batch->strain[0] + i},
-                               .stress = {batch->stress[0] + i},
-                               .committed = old,
-                               .trial = new,
-                               .tangent = batch->tangent ? batch->tangent + i : NULL,
-                               .elastic_stage = batch->elastic_stage,
-                               .time = batch->time,
-                               .time_step = batch->time_step,
-                               .length = batch->length ? batch->length + i : NULL,
-                               .lateral = batch->lateral ? batch->lateral + i : NULL};
+    breccia_batch one = *batch;
+    batch_places_from(&one, i);
+    one.count = 1;
+    one.strain[0] += i;
+    one.stress[0] += i;
+    one.committed = old;
+    one.trial = new;
+    if (one.tangent) one.tangent += i;
+    if (one.length) one.length += i;
+    if (one.lateral) one.lateral += i;
     if (material_update(&c->base, &one) >= 0) return i;
   }
   return -1;
@@ -123,6 +131,7 @@ const breccia_law law_min_max = {
     .history_is_damage = history_is_damage,
     .never_crushes = never_crushes,
     .begin = begin,
+    .begin_point = begin_point,
     .update = update,
 };
 
@@ -140,6 +149,12 @@ static const Material *min_max_base(const Material *material)
 bool material_takes_lateral(const Material *material)
 {
   return min_max_base(material)->law->takes_lateral != 0;
+}
+
+bool material_takes_places(const Material *material)
+{
+  const breccia_law *law = min_max_base(material)->law;
+  return !material->remote && (law->takes_places || law->begin_point);
 }
 
 int material_confined_history(const Material *material)

@@ -14,6 +14,8 @@ bool material_is_beyond_limits(const Material *material, const double *history);
 
 /** Returns true if the law of a material, or the law inside its limits of strain, reads the pressure across bonds. */
 bool material_takes_lateral(const Material *material);
+/** Returns true if the law of a material, or the law that it limits, asks where points stand. */
+bool material_takes_places(const Material *material);
 /** Returns breccia_law.confined_history of the law of a material, or of the law inside its limits of strain; 0 for laws
  *  in servers. */
 int material_confined_history(const Material *material);

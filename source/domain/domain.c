@@ -376,6 +376,13 @@ size_t domain_particle_bytes(const Domain *d)
 size_t domain_bytes(const Domain *d)
 {
   size_t bytes = domain_particle_bytes(d) + family_bytes(&d->family);
+  if (d->strength) bytes += 2 * sizeof(double) * (size_t)d->particles->places;
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    const size_t rows = (size_t)region->points.count, vectors = region->places.direction[0] ? 6 : 3;
+    if (region->row_strength) bytes += rows * sizeof(double);
+    if (region->places.position[0]) bytes += rows * (2 * sizeof(int32_t) + vectors * sizeof(double));
+  }
   for (int r = 0; r < d->region_count; ++r)
     bytes += points_tangent_bytes(&d->regions[r].points) + bond_list_bytes(&d->regions[r].bonds, &d->family) +
              d->regions[r].type->bytes(d->regions[r].formulation) + window_bytes(d, &d->regions[r]);

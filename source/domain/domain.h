@@ -38,11 +38,13 @@ typedef struct Region {
   double *initial[6];
   double *beside
       [3]; /* [rows of points] what free strains put in the place of Points.initial, where it is not shared; NULL: nothing */
-  int64_t particles; /* of them */
-  bool takes_both;   /* its formulation in the deck takes laws of one strain, too, if all are */
-  bool is_linear;    /* no law of it dissipates or remembers */
-  uint8_t *foreign;  /* [slices] 1: of other regions; NULL: there are none */
-  int64_t *border;   /* [border_count] slices of others that have bonds with it */
+  PointPlaces places;   /* of its points, if a law asks; owned */
+  double *row_strength; /* [rows of points on bonds] factors on strengths; NULL: 1 */
+  int64_t particles;    /* of them */
+  bool takes_both;      /* its formulation in the deck takes laws of one strain, too, if all are */
+  bool is_linear;       /* no law of it dissipates or remembers */
+  uint8_t *foreign;     /* [slices] 1: of other regions; NULL: there are none */
+  int64_t *border;      /* [border_count] slices of others that have bonds with it */
   int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
   int64_t *stripe, *stripe_slice; /* [stripe_count + 1] batches and slices at which stripes begin (Phase, by_stripes) */
   int64_t stripe_count;
@@ -129,6 +131,9 @@ typedef struct Strains {
   double whole;        /* the largest sum of squares of a family's bond lengths, by volume, before anything broke */
 } Strains;
 
+/** Fields of parameters of a deck (strength_field.h). */
+typedef struct FieldsSpec FieldsSpec;
+
 typedef struct Domain {
   Body body;
   Particles *particles; /* the body's */
@@ -153,7 +158,9 @@ typedef struct Domain {
   Strains strains;
   /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   uint8_t *gave_up;
-  StepClock clock; /* of the step under way */
+  double *strength;              /* [places] factors on strengths (strength_field.h); NULL: 1 */
+  const SectionList *selections; /* named ones of the deck, borrowed while the domain is made */
+  StepClock clock;               /* of the step under way */
   Region *regions;
   int region_count;
   int32_t *region; /* [slices] */
@@ -199,9 +206,11 @@ typedef struct DomainSpec {
   const MarginList *margins;
   const PeridynamicsSpec *peridynamics;
   const FailureSpec *failure; /* or NULL */
-  void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
-  bool is_strained;           /* some load is an initial strain */
-  bool begins_under_stress;   /* the deck gives stresses to begin with */
+  const FieldsSpec *fields;   /* or NULL */
+  const SectionList *selections;
+  void *const *forces;      /* [FORCES_KINDS] sections, or NULL */
+  bool is_strained;         /* some load is an initial strain */
+  bool begins_under_stress; /* the deck gives stresses to begin with */
 } DomainSpec;
 
 static inline Region *domain_region(const Domain *domain, int64_t place)

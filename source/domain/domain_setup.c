@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/team.h"
+#include "domain/strength_field.h"
 #include "domain/tensile_strength.h"
 #include "loading/support.h"
 #include <math.h>
@@ -70,6 +71,21 @@ LimitsOf domain_limits_of(const Domain *d, int region, const BondLength *lengths
                     .material_count = d->material_count};
 }
 
+/** Finds the factors on limits: those on strengths, squared for limits that are energies. */
+static int create_limit_factors(Domain *d, Error *error)
+{
+  Failure *failure = &d->failure;
+  const double exponent = 2.0 / failure->criterion->power;
+  failure->factor = places_array(d->particles->places, "strengths", error);
+  if (!failure->factor) return BRECCIA_FAILURE;
+  failure->least_factor = INFINITY;
+  for (int64_t i = 0; i < d->particles->places; ++i) {
+    failure->factor[i] = pow(d->strength[i], exponent);
+    failure->least_factor = fmin(failure->least_factor, failure->factor[i]);
+  }
+  return BRECCIA_OK;
+}
+
 static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *lengths)
 {
   const Criterion *criterion = criterion_of(spec);
@@ -90,6 +106,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   }
   for (int k = 0; k < d->material_count && !status; ++k)
     if (isfinite(d->failure.limit[k])) d->failure.criterion = criterion;
+  if (!status && d->strength && d->failure.criterion) status = create_limit_factors(d, reader->error);
   free(limit);
   free(present);
   if (!status && d->failure.criterion && criterion->create)
@@ -332,6 +349,8 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if (bad) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;
+  d->selections = spec->selections;
+  if ((status = strength_field_create(d, reader, spec->fields))) return status;
   if ((status = fill_particles(d, spec, error)) || (status = make_rotations(d, error))) return status;
 
   if (forgets_spacings(pd, &d->body))
@@ -360,6 +379,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if (may_give_up && d->region_count > 1)
     return node_error(reader->document, section_node(spec->failure, "failed laws"), error,
                       "failed laws: 'break' needs a body of one formulation; leave 'regions' out, or let the run stop");
+  status = strength_field_check(d, reader, spec->fields);
   for (int r = 0; r < d->region_count && !status; ++r)
     status = region_create_points(d, &d->regions[r], space, may_give_up, &of, error);
   if (!status) status = share_out(d, error);
@@ -432,6 +452,8 @@ void domain_destroy(Domain *d)
   free(d->failure.limit);
   free(d->failure.regions);
   free(d->failure.weights);
+  places_free(&d->failure.factor);
+  places_free(&d->strength);
   free(d->failure.kept);
   free(d->broken);
   free(d->torn);

@@ -3,6 +3,7 @@
 #include "constitutive/min_max.h"
 #include "domain/regions.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /** Runs of points, one after another: a row joins the last run if it is of the same material. */
@@ -93,6 +94,71 @@ static int region_list_bonds(Domain *d, Region *region, Error *error)
   return status;
 }
 
+/** Sets place and strength of a row of points.
+ *  @param[in] ends  places of both ends of a bond; twice that of a particle */
+static void region_set_row(const Domain *d, Region *region, int64_t row, const int32_t ends[2])
+{
+  const Particles *p = d->particles;
+  PointPlaces *at = &region->places;
+  int32_t numbers[2] = {p->number[ends[0]], p->number[ends[1]]};
+  if (region->row_strength) region->row_strength[row] = fmin(d->strength[ends[0]], d->strength[ends[1]]);
+  if (!at->position[0]) return;
+  double middle[3], along[3], square = 0;
+  domain_bond_middle(d, numbers, middle);
+  if (body_outside(&d->body, numbers[0]) && body_outside(&d->body, numbers[1]))
+    for (int k = 0; k < 2; ++k) numbers[k] = (int32_t)body_original(&d->body, numbers[k]);
+  for (int k = 0; k < 3; ++k) {
+    along[k] = p->position[k][p->place_of[numbers[1]]] - p->position[k][p->place_of[numbers[0]]];
+    square += along[k] * along[k];
+    at->position[k][row] = middle[k];
+  }
+  for (int k = 0; k < 3 && at->direction[0]; ++k) at->direction[k][row] = along[k] / sqrt(square);
+  for (int k = 0; k < 2; ++k) at->particle[k][row] = (int32_t)body_original(&d->body, numbers[k]);
+}
+
+/** Finds places and strengths of the rows of points, as far as laws or fields ask for them. @param[in] present  [rows] */
+static int region_place_rows(Domain *d, Region *region, int64_t rows, const uint8_t *present, Error *error)
+{
+  const bool on_bonds = region->bonds.first != NULL;
+  bool asks = false;
+  for (int k = 0; k < d->material_count; ++k) {
+    const Material *m = &d->materials[k];
+    if (!region_is_made_of(d, region, m->name)) continue;
+    asks |= material_takes_places(m);
+    if (d->begins_under_stress && m->law->components == 6 && m->law->begin_point)
+      return error_add(
+          error, BRECCIA_USER_ERROR,
+          "initial stress: histories of the law '%s' of material '%s' begin by the places of points, which "
+          "points that begin under stress do not take; leave 'initial stress' out, or take another law",
+          m->law_name, m->name);
+  }
+  const size_t room = (size_t)rows + 1;
+  bool is_lost = false;
+  if (on_bonds && d->strength)
+    is_lost |= !(region->row_strength = memory_zeroed(room, sizeof(double), "strengths", error));
+  for (int k = 0; k < 2 && asks; ++k)
+    is_lost |= !(region->places.particle[k] = memory_zeroed(room, sizeof(int32_t), "places of points", error));
+  for (int k = 0; k < 3 && asks; ++k) {
+    is_lost |= !(region->places.position[k] = memory_zeroed(room, sizeof(double), "places of points", error));
+    if (on_bonds)
+      is_lost |= !(region->places.direction[k] = memory_zeroed(room, sizeof(double), "places of points", error));
+  }
+  if (is_lost) return BRECCIA_FAILURE;
+  for (int64_t row = 0; row < rows && region->row_strength; ++row) region->row_strength[row] = 1;
+  for (int64_t row = 0; row < rows && asks && !on_bonds; ++row)
+    if (present[row]) region_set_row(d, region, row, (const int32_t[]){(int32_t)row, (int32_t)row});
+  for (int64_t s = 0; s < d->particles->slices && on_bonds && (asks || region->row_strength); ++s)
+    for (int64_t row = region->bonds.first[s]; row < region->bonds.first[s + 1]; ++row) {
+      int64_t slot;
+      int lane;
+      if (!present[row]) continue;
+      bond_list_bond(&region->bonds, &d->family, s, row, &slot, &lane);
+      const int32_t ends[2] = {(int32_t)(s * SLICE + lane), family_bond(&d->family, s, slot, lane).neighbour};
+      region_set_row(d, region, row, ends);
+    }
+  return BRECCIA_OK;
+}
+
 int region_create_points(Domain *d, Region *region, Space space, bool may_give_up, const BondLength *of, Error *error)
 {
   const Particles *p = d->particles;
@@ -134,6 +200,9 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   spec.runs = runs.runs;
   spec.run_count = runs.count;
   spec.present = present;
+  if (!status && spec.components) status = region_place_rows(d, region, runs.rows, present, error);
+  spec.places = region->places;
+  spec.strength = on_particles ? d->strength : region->row_strength;
   if (!status) status = points_create(&region->points, &spec, error);
   for (int k = 0; k < 6 && on_particles; ++k) {
     d->strain[k] = region->points.strain[k];

@@ -166,6 +166,10 @@ void regions_destroy(Domain *d)
     if (region->formulation) region->type->destroy(region->formulation);
     points_destroy(&region->points);
     bond_list_destroy(&region->bonds);
+    free(region->row_strength);
+    for (int k = 0; k < 2; ++k) free(region->places.particle[k]);
+    for (int k = 0; k < 3; ++k) free(region->places.position[k]);
+    for (int k = 0; k < 3; ++k) free(region->places.direction[k]);
     free(region->foreign);
     free(region->border);
     free(region->stripe);

@@ -103,7 +103,7 @@ static double least_limit(const Failure *failure, const Family *f, int64_t slice
   double least = failure->limit[failure->material[slice]];
   for (int k = 0; k < failure->material_count && f->stored[slice] < f->first[slice + 1]; ++k)
     least = fmin(least, failure->limit[k]);
-  return least;
+  return failure->factor ? least * failure->least_factor : least;
 }
 
 /** What a bond holds by the formulation of one of its ends, per volume squared. */

@@ -100,6 +100,8 @@ LANES_INLINE Lanes reserve(const Failure *failure, const Family *f, int64_t slot
   }
   Lanes limit = lanes_set(failure->limit[failure->material[place / SLICE]]);
   for (int k = 0; !lattice && k < LANES; ++k) limit[k] = failure_limit(failure, place, index[k]);
+  if (lattice && failure->factor)
+    limit *= lanes_least(lanes_load(failure->factor + place), lanes_load(failure->factor + base));
   if (p->free_strain)
     limit += lanes_set(0.5) * (lanes_load(p->free_strain + place) +
                                (lattice ? lanes_load(p->free_strain + base) : lanes_gather(p->free_strain, index)));

@@ -108,6 +108,8 @@ struct Failure {
   const void *keys;           /* of the criterion, borrowed from the deck; NULL: the deck gives none */
   double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
   const int32_t *material;    /* [slices] */
+  /* [places] factors on limits, of which a bond has the smaller one of its ends, and the smallest; NULL: 1 */
+  double *factor, least_factor;
   int material_count;
   FailureRegion *regions; /* [region_count] */
   int region_count;
@@ -127,7 +129,9 @@ static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
 {
   if (failure->kept && (failure->kept[a] & failure->kept[b])) return __builtin_inf();
   double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
-  return (one < other ? one : other) * (1 + failure->beyond);
+  const double limit = (one < other ? one : other) * (1 + failure->beyond);
+  if (!failure->factor) return limit;
+  return limit * (failure->factor[a] < failure->factor[b] ? failure->factor[a] : failure->factor[b]);
 }
 
 /** Returns the stretch of a bond less its free strain. */

@@ -279,11 +279,13 @@ static void fade(const Correspondence *c, const Sweep *sweep)
   const Material *m = points_material(c->points, sweep->first * SLICE);
   const bool may = fades_in(c, m) && !c->points->clock->elastic_stage, softens = may && m->softening_energy > 0;
   const bool yields = c->fades == FADES_WITH_YIELDING && c->influence_falls;
-  const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
+  const double *strength = c->points->strength;
+  const Lanes one = lanes_set(1), whole = lanes_set(most_stored * m->softening_energy);
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (f->mark[slice]) set_hold(c, slice, f->next);
     for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; place += LANES) {
       const int64_t here = place - sweep->first * SLICE;
+      const Lanes factor = strength ? lanes_load(strength + place) : one, most = whole * factor * factor;
       Lanes left = may ? stiffness_left(c, m, sweep, here) : one;
       if (!f->mark[slice]) {
         const LaneMask lost = left < one;

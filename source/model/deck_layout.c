@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "deck/resolve.h"
+#include "domain/strength_field.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -85,6 +86,12 @@ static const Field deck_fields[] = {
      .standard = "",
      .meaning = "when bonds break; never when absent",
      .section = &failure_section},
+    {.key = "fields",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(DeckSpec, fields),
+     .standard = "",
+     .meaning = "parameters that differ from particle to particle",
+     .section = &fields_section},
 #define FORCES(name, about)                                                                                            \
   {.key = #name,                                                                                                       \
    .kind = FIELD_SECTION,                                                                                              \

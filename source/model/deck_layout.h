@@ -24,6 +24,7 @@ typedef struct DeckSpec {
       pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
+  FieldsSpec *fields;
   void *forces[FORCES_KINDS];             /* of those by name their SectionList */
   SectionList named_forces[FORCES_KINDS]; /* as read */
   ResultsSpec *results;

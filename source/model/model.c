@@ -274,6 +274,8 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
                       .margins = &margins,
                       .peridynamics = spec->peridynamics,
                       .failure = spec->failure,
+                      .fields = spec->fields,
+                      .selections = &spec->selections,
                       .forces = spec->forces,
                       .is_strained = has_initial_strains(spec),
                       .begins_under_stress = spec->initial_stress.count > 0};

@@ -5,6 +5,7 @@
 #include "base/cores.h"
 #include "base/tensor.h"
 #include "domain/bending_strength.h"
+#include "domain/strength_field.h"
 #include "domain/tensile_strength.h"
 #include "domain/toughness.h"
 #include "model/plausibility.h"
@@ -231,6 +232,7 @@ const char *breccia_model_overview(breccia_model *model)
   tensile_strength_describe(d, text);
   bending_strength_describe(d, text);
   describe_initial_stress(model, text);
+  strength_field_describe(d, text);
   plausibility_describe_contact(model, text);
   forces_describe(&d->forces, model->units, text);
   plausibility_in_short(model, text);

@@ -226,7 +226,7 @@ static void add_deck(Text *page, bool schema)
     return;
   }
   describe_markdown(&deck_section, tables, count, page);
-  text_add(page, "\n## Fields\n\nFor results and pictures; named histories of materials may stand there too.\n\n"
+  text_add(page, "\n## Output fields\n\nFor results and pictures; named histories of materials may stand there too.\n\n"
                  "| field | components | meaning |\n|---|---|---|\n");
   for (int k = 0; output_field_at(k); ++k) {
     const OutputField *f = output_field_at(k);

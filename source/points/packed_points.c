@@ -6,7 +6,7 @@
 
 bool packed_points_take(const Material *m)
 {
-  return !m->remote && m->history_values <= PACKED_VALUES;
+  return !m->remote && !m->law->takes_places && m->history_values <= PACKED_VALUES;
 }
 
 void packed_points_pack(PackedPoints *packed, const Material *m, const breccia_batch *from, bool is_packed,

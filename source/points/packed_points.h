@@ -13,7 +13,7 @@ typedef struct PackedPoints {
   double committed[PACKED_VALUES * BATCH], trial[PACKED_VALUES * BATCH];
 } PackedPoints;
 
-/** Whether points of a material can be packed: those of servers are known there by their places, and long histories have no room. */
+/** Whether points of a material can be packed: those of servers are known there by their places, laws may ask where points stand, and long histories have no room. */
 bool packed_points_take(const Material *m);
 
 /** Takes points out of a batch, the whole one or the packed one itself, with strains, histories and lengths.

@@ -18,6 +18,7 @@ breccia_batch batch_part(const breccia_batch *whole, const Material *m, int comp
   if (part.tangent) part.tangent += components * components * first;
   if (part.length) part.length += first;
   if (part.lateral) part.lateral += first;
+  batch_places_from(&part, first);
   return part;
 }
 

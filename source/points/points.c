@@ -8,15 +8,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+static breccia_place place_of_row(const Points *points, int64_t row)
+{
+  const PointPlaces *places = &points->places;
+  breccia_place place = {.size = sizeof place};
+  for (int k = 0; k < 2; ++k) place.particle[k] = places->particle[k][row];
+  for (int k = 0; k < 3; ++k) {
+    place.position[k] = places->position[k][row];
+    if (places->direction[k]) place.direction[k] = places->direction[k][row];
+  }
+  return place;
+}
+
 static void begin_run(void *context, int64_t n)
 {
   const Points *points = context;
   const PointsRun *run = &points->runs[n];
   const Material *m = &points->materials[run->material];
-  for (int64_t i = 0; i < run->count && m->law->begin; ++i) {
+  for (int64_t i = 0; i < run->count; ++i) {
     const int64_t at = points->history_first[n] + i * m->history_values;
-    m->law->begin(m->constants, points->committed + at);
-    m->law->begin(m->constants, points->trial + at);
+    if (m->law->begin_point && points->places.position[0]) {
+      const breccia_place place = place_of_row(points, run->first + i);
+      m->law->begin_point(m->constants, &place, points->committed + at);
+      m->law->begin_point(m->constants, &place, points->trial + at);
+    } else if (m->law->begin) {
+      m->law->begin(m->constants, points->committed + at);
+      m->law->begin(m->constants, points->trial + at);
+    }
   }
 }
 
@@ -46,7 +64,9 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
                      .clock = spec->clock ? spec->clock : &still,
                      .materials = spec->materials,
                      .material_count = spec->material_count,
-                     .run_count = spec->run_count};
+                     .run_count = spec->run_count,
+                     .places = spec->places,
+                     .strength = spec->strength};
   for (int i = 0; i < BATCH; ++i) points->length[i] = spec->length;
   if (create_runs(points, spec, error)) return BRECCIA_FAILURE;
   if (spec->may_give_up && !(points->gave_up = memory_zeroed((size_t)points->count, 1, "failed laws", error)))
@@ -237,16 +257,49 @@ void points_make_batch(breccia_batch *batch, const Points *points, int64_t first
   batch->time_step = points->clock->time_step;
   batch->length = isnan(points->length[0]) ? NULL : points->length;
   batch->lateral = points->takes_lateral ? strain[1] : NULL;
+  for (int k = 0; k < 2; ++k)
+    batch->particle[k] = points->places.particle[k] ? points->places.particle[k] + first : NULL;
+  for (int k = 0; k < 3; ++k) {
+    batch->position[k] = points->places.position[k] ? points->places.position[k] + first : NULL;
+    batch->direction[k] = points->places.direction[k] ? points->places.direction[k] + first : NULL;
+  }
   for (int k = 0; k < 6; ++k) {
     batch->strain[k] = k < components ? strain[k] : NULL;
     batch->stress[k] = k < components ? stress[k] : NULL;
   }
 }
 
-int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6])
+/** Asks a law with factors s on its strength: stress = s law(strain / s), whose tangent is that of the law. */
+static int ask_scaled(const Points *points, const Material *m, const breccia_batch *batch, int64_t first,
+                      double *strain_zz)
 {
-  return points->plane_stress && points->components == 6 ? plane_stress_update(m, batch, strain[ZZ])
-                                                         : material_update(m, batch);
+  _Alignas(64) double scaled[6][BATCH], found[6][BATCH], lateral[BATCH];
+  const double *strength = points->strength + first;
+  breccia_batch inner = *batch;
+  for (int k = 0; k < points->components; ++k) {
+    for (int i = 0; i < batch->count; ++i) scaled[k][i] = batch->strain[k][i] / strength[i];
+    inner.strain[k] = scaled[k];
+    inner.stress[k] = found[k];
+  }
+  for (int i = 0; i < batch->count && batch->lateral; ++i) lateral[i] = batch->lateral[i] / strength[i];
+  if (batch->lateral) inner.lateral = lateral;
+  const int bad = strain_zz ? plane_stress_update(m, &inner, scaled[ZZ]) : material_update(m, &inner);
+  for (int k = 0; k < points->components && bad < 0; ++k)
+    for (int i = 0; i < batch->count; ++i) batch->stress[k][i] = strength[i] * found[k][i];
+  for (int i = 0; i < batch->count && bad < 0 && strain_zz; ++i) strain_zz[i] = strength[i] * scaled[ZZ][i];
+  return bad;
+}
+
+int points_ask_law(const Points *points, const Material *m, breccia_batch *batch, int64_t first, double *strain_zz)
+{
+  if (points->strength) return ask_scaled(points, m, batch, first, strain_zz);
+  return strain_zz ? plane_stress_update(m, batch, strain_zz) : material_update(m, batch);
+}
+
+int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, int64_t first,
+                        double *const strain[6])
+{
+  return points_ask_law(points, m, batch, first, points->plane_stress && points->components == 6 ? strain[ZZ] : NULL);
 }
 
 /** One point after the other: those that cannot be integrated are marked, carry nothing and keep their history. */
@@ -258,7 +311,7 @@ static void update_one_by_one(Points *points, const Material *m, const breccia_b
     breccia_batch one = batch_part(batch, m, n, i, 1);
     double *here[6] = {NULL};
     for (int k = 0; k < n; ++k) here[k] = strain[k] + i;
-    if (points_update_batch(points, m, &one, here) < 0) continue;
+    if (points_update_batch(points, m, &one, first + i, here) < 0) continue;
     points->gave_up[first + i] |= 1;
     for (int k = 0; k < n; ++k) one.stress[k][0] = 0;
     memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
@@ -286,7 +339,7 @@ static int64_t update_rows(Points *points, int64_t first, int count, double *con
   points_make_batch(&batch, points, first, count, strain, stress);
   double *own = batch.trial;
   if (untouched_batch(points, material, first, count, &batch, trial)) {
-    if (points_update_batch(points, m, &batch, strain) < 0) {
+    if (points_update_batch(points, m, &batch, first, strain) < 0) {
       untouched_keep(points, material, first, count, trial, own);
       return -1;
     }
@@ -294,7 +347,7 @@ static int64_t update_rows(Points *points, int64_t first, int count, double *con
   }
   if (points->components == 1 && m->history_values <= 2) fetch_ahead(points, &batch, m->history_values);
   if (m->remote && points_ask_ahead(points)) return point_servers_answer(points, m, &batch, first);
-  const int bad = points_update_batch(points, m, &batch, strain);
+  const int bad = points_update_batch(points, m, &batch, first, strain);
   if (bad < 0) return -1;
   if (!points->gave_up || m->remote) return first + bad;
   points_make_batch(&batch, points, first, count, strain, stress);

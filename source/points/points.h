@@ -33,6 +33,12 @@ typedef enum Secants {
   SECANTS_OF_ALL, /* and of points of six components whose law softens: the first moduli, by the share of them that is left */
 } Secants;
 
+/** Where points stand, for laws that ask (breccia_batch). All arrays NULL: no law asks. */
+typedef struct PointPlaces {
+  int32_t *particle[2];               /* [rows] each */
+  double *position[3], *direction[3]; /* [rows] each; direction NULL for points of particles */
+} PointPlaces;
+
 typedef struct PointServers PointServers; /* laws in other processes (points/servers.c) */
 typedef struct Untouched Untouched;       /* rows that remember nothing yet (points/untouched.c) */
 
@@ -67,6 +73,8 @@ typedef struct Points {
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
   const StepClock *clock; /* borrowed */
   double length[BATCH];   /* over which laws spread a fracture energy, alike for all points; NaN: unknown */
+  PointPlaces places;     /* borrowed */
+  const double *strength; /* [count] factor s of each row: stress(strain) = s law(strain / s); borrowed. NULL: 1 */
   PointServers *servers;  /* NULL: no law is remote */
   double *identity;       /* by which the servers are found again after a restart */
   size_t identity_size;
@@ -103,6 +111,8 @@ typedef struct PointsSpec {
   const uint8_t *present;                /* [rows] 0 where a row has no point; NULL: all have one */
   bool may_give_up;                      /* points that cannot be integrated are marked and carry nothing */
   double length;
+  PointPlaces places;     /* borrowed for good; zeros: nobody asks */
+  const double *strength; /* [rows] borrowed for good; NULL: 1 */
 } PointsSpec;
 
 int points_create(Points *points, const PointsSpec *spec, Error *error);

@@ -14,13 +14,22 @@ double *points_kept_tangent(const Points *points, int64_t n, int64_t row);
 void points_make_batch(breccia_batch *batch, const Points *points, int64_t first, int count, double *const *strain,
                        double *const *stress);
 
-/** Asks a law, in plane stress such that stresses zz vanish. @return -1, or the index of a point whose law could not be integrated */
-int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6]);
+/** Asks a law, in plane stress such that stresses zz vanish, with the strengths of the rows.
+ *  @param[in] first  row of the first point
+ *  @return -1, or the index of a point whose law could not be integrated */
+int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, int64_t first,
+                        double *const strain[6]);
 
 /** In place of the tangents of rows whose law softens: its first moduli times the share of them with which a point unloads, or that stands between its
  *  stress and its strain. */
 void points_take_secants(const Points *points, int64_t first, int count, double *const strain[6],
                          double *const stress[6]);
+
+/** Asks a law with the strengths of the rows, which points_update_batch does where plane stress wants it.
+ *  @param[in] first          row of the first point
+ *  @param[in,out] strain_zz  strains zz, which are found such that stresses zz vanish; NULL: strains stay
+ *  @return -1, or the index of a point whose law could not be integrated */
+int points_ask_law(const Points *points, const Material *m, breccia_batch *batch, int64_t first, double *strain_zz);
 
 /** Part of a batch of points of so many components. */
 breccia_batch batch_part(const breccia_batch *whole, const Material *m, int components, int first, int count);

@@ -28,7 +28,7 @@ static double unloading_share(const Points *points, int64_t row, const double st
   batch.trial = scratch;
   batch.tangent = NULL;
   memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-  if (material_update(m, &batch) >= 0) return 0;
+  if (points_ask_law(points, m, &batch, row, NULL) >= 0) return 0;
   for (int k = 0; k < 6; ++k) {
     square += stress[k] * stress[k] * (k < 3 ? 1 : 2);
     fall += stress[k] * (stress[k] - after[k]) * (k < 3 ? 1 : 2);
@@ -76,7 +76,10 @@ static void find_linear_tangent(const Points *points, const Material *m, double 
   breccia_batch one = {.size = sizeof one, .count = 1, .tangent = tangent};
   memcpy(one.strain, at, sizeof at);
   memcpy(one.stress, to, sizeof to);
-  points_update_batch(points, m, &one, at);
+  if (points->plane_stress)
+    plane_stress_update(m, &one, at[ZZ]);
+  else
+    material_update(m, &one);
 }
 
 /** The tangent by the first moduli. */

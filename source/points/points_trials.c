@@ -18,7 +18,7 @@ static double stress_from(const Points *points, int64_t row, const double *from,
   batch.trial = to;
   batch.tangent = tangent;
   memcpy(to, from, sizeof(double) * (size_t)m->history_values);
-  if (material_update(m, &batch) < 0) return stress;
+  if (points_ask_law(points, m, &batch, row, NULL) < 0) return stress;
   memcpy(to, from, sizeof(double) * (size_t)m->history_values);
   if (tangent) *tangent = 0;
   return 0;
@@ -54,7 +54,7 @@ int64_t points_ask_slopes(Points *points, int64_t first, int count, double *stra
   double *const at[2] = {strain, NULL}; /* laws in servers do not receive the pressure across bonds */
   points_make_batch(&batch, points, first, count, at, &stress);
   batch.tangent = slope;
-  const int bad = material_update(m, &batch);
+  const int bad = points_ask_law(points, m, &batch, first, NULL);
   return bad < 0 ? -1 : first + bad;
 }
 
@@ -73,7 +73,7 @@ bool points_try_stress(const Points *points, int64_t row, const double strain[6]
   batch.trial = scratch;
   batch.tangent = NULL;
   if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-  return points_update_batch(points, m, &batch, at) < 0;
+  return points_update_batch(points, m, &batch, row, at) < 0;
 }
 
 double points_energy_at(const Material *m, const double stress[6])
@@ -121,7 +121,7 @@ double points_softness(const Points *points, int64_t row)
                   step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
     }
     if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-    if (material_update(m, &batch) >= 0) continue;
+    if (points_ask_law(points, m, &batch, row, NULL) >= 0) continue;
     for (int k = 0; k < 6; ++k) product += before[k] * (after[k] - before[k]) * (k < 3 ? 1 : 2);
     if (square > 0) stiffest = fmax(stiffest, product / (step * square));
   }

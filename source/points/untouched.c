@@ -2,6 +2,7 @@
  * histories takes more time than their law. Rows are marked in groups; laws see one history as it begins in the place of those of all rows of
  * a marked group, and what they write counts only if it differs. What stands in `committed` and `trial` is the same then, so that nobody else needs to
  * know; and where laws begin with zeros, histories take memory only where something has happened. */
+#include "constitutive/min_max.h"
 #include "points/points_parts.h"
 
 #include <stdlib.h>
@@ -30,7 +31,7 @@ int untouched_create(Points *points, Error *error)
   if (!u->begin || !u->groups) return BRECCIA_FAILURE;
   for (int k = 0; k < points->material_count; ++k) {
     const Material *m = &points->materials[k];
-    if (m->remote || m->history_values < 1 || m->history_values > MOST_VALUES) continue;
+    if (m->remote || material_takes_places(m) || m->history_values < 1 || m->history_values > MOST_VALUES) continue;
     u->begin[k] = memory_zeroed((size_t)(BATCH * m->history_values), sizeof(double), "histories", error);
     if (!u->begin[k]) return BRECCIA_FAILURE;
     for (int i = 0; i < BATCH && m->law->begin; ++i)

@@ -58,6 +58,14 @@ static bool column_group_is_needed(const Domain *d)
 {
   return d->body.group_of != NULL;
 }
+static double column_strength(const Domain *d, int64_t n)
+{
+  return d->strength[d->particles->place_of[n]];
+}
+static bool column_strength_is_needed(const Domain *d)
+{
+  return d->strength != NULL;
+}
 static double column_outside(const Domain *d, int64_t n)
 {
   return body_outside(&d->body, n);
@@ -94,6 +102,11 @@ static const ParticleColumn columns[] = {
      .value = column_group,
      .word = column_group_word,
      .is_needed = column_group_is_needed},
+    {.name = "Strength",
+     .dimension = "1",
+     .about = "factor on the strength (`fields`); absent where the deck gives none",
+     .value = column_strength,
+     .is_needed = column_strength_is_needed},
     {.name = "Outside",
      .dimension = "",
      .about = "1 for particles of the layers outside of supports, else 0; absent where there are no such layers",

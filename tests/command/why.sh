@@ -33,7 +33,7 @@ pair=$(echo "$first" | sed 's/.*particles \([0-9]*\) and \([0-9]*\) at.*/\1,\2/'
 equal "one bond" "$("$breccia" why out --bond "$pair")" "$first"
 equal "one bond from its other end" "$("$breccia" why out/results.vtkhdf --bond "${pair#*,},${pair%,*}")" "$first"
 contains "the summary agrees" "$(grep first_broken_bond out/summary.json)" "\"particles\": [${pair%,*}, ${pair#*,}]"
-contains "the summary tells the cause" "$(grep first_broken_bond out/summary.json)" '"cause": "limit", "value": '
+contains "the summary tells the cause" "$(grep first_broken_bond out/summary.json)" '"cause": "limit", "criterion": "critical bond stress", "material": "m", "quantity": "tension", "value": '
 
 # A run that is continued after a stop gives the same reasons.
 "$breccia" run torn.yaml --output parts --steps 1500 > /dev/null 2>&1

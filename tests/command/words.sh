@@ -497,7 +497,7 @@ s=pull/summary.json
 near "pull: fracture" "$(figures $s fracture)" 15 0.01
 near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
 near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
-contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0], "cause": "limit", "value": 0.001, "limit": 0.001, "unit": ""}'
+contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0], "cause": "limit", "criterion": "critical stretch", "material": "m", "quantity": "stretch", "value": 0.001, "limit": 0.001, "unit": ""}'
 grep -q "cannot crush" out && fail "what was never pressed is told: $(cat out)"
 # ---- a cone without dilation and tension cut-off in the deck: c cot(phi) of mean tension, 10 kPa / tan(30 deg) ----
 cat > cone.yaml <<'Y'

@@ -58,7 +58,10 @@ WORDS, LAST_DIGIT = "numbers of the words", 0.015  # printed numbers have three 
 # Keys that no deck of this test has, and the test that has them.
 ELSEWHERE = {
     "material": ("opensees", "remote", "server", "processes", "stage", "stress unit", "timeout"),  # servers.sh
-    "deck": ("include", "variables", "title", "pictures"),  # pictures: picture.sh; the others change no results
+    "deck": ("include", "variables", "title", "pictures", "fields"),  # pictures: picture.sh; fields: test_strength_field
+    "fields": ("strength",),
+    "strength": ("weibull", "expression", "on", "least"),
+    "weibull": ("shape", "seed"),
     "block": ("file",),  # bodies from files: relations and unit tests of the body
     "selection": ("group", "outside"),
     "file history": ("channel",),  # records of several channels: unit tests of loading

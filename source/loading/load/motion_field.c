@@ -1,4 +1,4 @@
-#include "deck/expression.h"
+#include "deck/coordinates.h"
 #include "loading/load/load_parts.h"
 
 #include <math.h>
@@ -41,48 +41,16 @@ static const TextList *given(const LoadValue *value, int *order, const char **ke
   return *order ? &s->velocity : &s->displacement;
 }
 
-/** Where an expression is reckoned: the names x, y, z. */
-static int find_coordinate(void *context, const char *name, Measure *value, Text *reason)
-{
-  const double *metres = context;
-  if (!name[1] && name[0] >= 'x' && name[0] <= 'z') {
-    *value = (Measure){.value = metres[name[0] - 'x'], .power[MEASURE_LENGTH] = 1};
-    return 0;
-  }
-  text_add(reason, "there is no '%s' here; a field knows x, y and z, and variables of the deck as ${%s}", name, name);
-  return 1;
-}
-
-static bool knows_coordinate(void *context, const char *name)
-{
-  (void)context;
-  return !name[1] && name[0] >= 'x' && name[0] <= 'z';
-}
-
 /** One component at all particles of a load. */
 static int reckon(const Load *load, const LoadMaking *making, const char *words, const char *dimension_name,
                   double *part, Text *reason)
 {
-  const Units *units = making->reader->units;
   const Particles *p = &making->body->particles;
   const Dimension *dimension = dimension_find(dimension_name);
-  const double metre = units_in_si(units, dimension_find("length"), 1), unit = units_in_si(units, dimension, 1);
   for (int64_t n = 0; n < load->selection.count; ++n) {
-    double at[3];
-    size_t where;
-    Measure value;
-    for (int k = 0; k < 3; ++k) at[k] = metre * p->position[k][load->selection.places[n]];
-    const Names names = {find_coordinate, knows_coordinate, at};
-    if (expression_read(words, units, &names, &value, &where, reason)) return 1;
-    const Measure wanted = {.power = {dimension->length, dimension->force, dimension->time}};
-    const bool plain = measure_is_plain(&value);
-    if (!plain && !measure_alike(&value, &wanted)) {
-      text_add(reason, "is ");
-      measure_describe(&value, reason);
-      text_add(reason, ", expected a %s", dimension_name);
-      return 1;
-    }
-    part[n] = plain ? value.value : value.value / unit;
+    const int32_t place = load->selection.places[n];
+    const double at[3] = {p->position[0][place], p->position[1][place], p->position[2][place]};
+    if (coordinates_evaluate(words, making->reader->units, at, dimension, &part[n], reason)) return 1;
   }
   return 0;
 }
