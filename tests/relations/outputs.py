@@ -89,7 +89,7 @@ def groups_of_fields(reader, folder, tell):
     return groups
 
 
-SKIPPED = {"title", "version", "deck", "settings", "variables", "wall_seconds", "ns_per_directed_bond_step", "threads", "units", "servers"}
+SKIPPED = {"broken_bonds_by_cause", "title", "version", "deck", "settings", "variables", "wall_seconds", "ns_per_directed_bond_step", "threads", "units", "servers"}
 SUMMARY_UNITS = {"time": "times", "time_step": "times", "stable_time_step": "times", "times": "times", "at": "positions and displacements",
                  "reactions": "forces", "loads": "forces", "moment of reactions": "moments", "moment of loads": "moments",
                  "displacement": "positions and displacements", "velocity": "velocities", "octahedral_shear_stress": "stresses",
