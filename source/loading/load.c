@@ -214,3 +214,9 @@ double load_magnitude(const LoadSpec *spec)
   const int k = index_of(spec);
   return types[k]->magnitude(&spec->of[k]);
 }
+
+double load_value(const LoadSpec *spec, double factor)
+{
+  const int k = index_of(spec);
+  return types[k]->at_factor ? types[k]->at_factor(&spec->of[k], factor) : factor * load_magnitude(spec);
+}

@@ -228,6 +228,8 @@ struct LoadType {
   LoadWords (*tell)(const Load *load, const Particles *particles);
   /** What it prescribes at factor 1: the length of a vector, or a number with its sign. */
   double (*magnitude)(const LoadValue *value);
+  /** What it prescribes at another factor. NULL: the factor times the magnitude. */
+  double (*at_factor)(const LoadValue *value, double factor);
   /** What it is, where its key and the dimension in the list do not tell. May be NULL. */
   const char *(*kind)(const LoadValue *value, const char **dimension);
 };
@@ -324,5 +326,9 @@ const char *load_kind(const LoadSpec *load, const char **dimension);
 
 /** What a load prescribes at factor 1: the length of its vector, or its number with its sign. */
 double load_magnitude(const LoadSpec *load);
+
+/** Returns what a load prescribes at a factor of its history, in the unit of load_kind: its magnitude times the factor;
+ *  of a strength reduction the number by which strengths are divided. */
+double load_value(const LoadSpec *load, double factor);
 
 #endif

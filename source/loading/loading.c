@@ -453,7 +453,7 @@ double loading_strength_reduction(const Loading *loading, int64_t stage, double 
   for (int k = 0; k < loading->count; ++k) {
     const Load *load = &loading->loads[k];
     if (load->type != &strength_reduction_load || !load_acts_in(load, stage)) continue;
-    factor *= 1 + (load->value->number - 1) * load_factor(load, time);
+    factor *= load_value(load->spec, load_factor(load, time));
   }
   return factor;
 }

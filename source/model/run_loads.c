@@ -10,7 +10,7 @@
 /** The farthest from zero that a load has been; 0 before its stage. */
 static double run_loads_peak(const breccia_model *model, const Load *load)
 {
-  return resultants_peak_factor(&model->solver, load) * load_magnitude(load->spec);
+  return load_value(load->spec, resultants_peak_factor(&model->solver, load));
 }
 
 /** Resultants of all loads, to be freed; NULL if they are not to be told: of a computation that has blown up, or

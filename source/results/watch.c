@@ -102,7 +102,8 @@ static const Field watch_fields[] = {
      .offset = offsetof(WatchSpec, load),
      .dimension = "load",
      .standard = "",
-     .meaning = "value of a named load; 0 in stages in which it does not act",
+     .meaning = "factor by the history and value of a named load; both 0 in stages in which it does not act. The value of a "
+                "strength reduction is the number by which strengths are divided, 1 where it does not act",
      .group = 'A'},
     {.key = "reaction of",
      .kind = FIELD_NAME,
@@ -240,13 +241,14 @@ static void bond_row(const Watch *w, const Solver *s, double *values)
 }
 static void load_row(const Watch *w, const Solver *s, double *values)
 {
-  values[0] = values[1] = 0;
+  values[0] = 0;
+  values[1] = 0 + load_value(w->load, 0); /* not -0 */
   for (int l = 0; l < s->loading->count;
        ++l) { /* of that name one acts at most, or several that begin together: the last */
     const Load *load = &s->loading->loads[l];
     if (!load->spec->name || strcmp(load->spec->name, w->spec->load) || !load_acts(s->loading, load)) continue;
     values[0] = load_factor(load, s->clock.time);
-    values[1] = values[0] * load_magnitude(load->spec);
+    values[1] = load_value(load->spec, values[0]);
   }
 }
 static void energy_row(const Watch *w, const Solver *s, double *values)

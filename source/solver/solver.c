@@ -432,15 +432,12 @@ static void solver_tell_loads(const Solver *s, Text *text)
   for (int k = 0; k < s->loading->count && told < FEW; ++k) {
     const Load *load = &s->loading->loads[k];
     const char *dimension, *kind = load_kind(load->spec, &dimension);
-    const double factor = load_factor(load, s->clock.time), magnitude = load_magnitude(load->spec);
+    const double factor = load->type->timeless ? 1 : load_factor(load, s->clock.time);
     char unit[64];
-    if (!load_acts(s->loading, load) || magnitude == 0) continue;
+    if (!load_acts(s->loading, load) || load_magnitude(load->spec) == 0) continue;
     units_name(s->reader->units, dimension_find(dimension), unit, sizeof unit);
     text_add(text, "%s%s (line %d) ", told++ ? ", " : "; loads: ", kind, load->spec->head.node->line);
-    if (load->type == &strength_reduction_load)
-      text_add(text, "at %.6g", loading_strength_reduction(s->loading, s->clock.stage, s->clock.time));
-    else
-      text_add(text, "at %.6g%s%s", load->type->timeless ? magnitude : factor * magnitude, *unit ? " " : "", unit);
+    text_add(text, "at %.6g%s%s", load_value(load->spec, factor), *unit ? " " : "", unit);
   }
 }
 

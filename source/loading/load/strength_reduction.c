@@ -24,4 +24,11 @@ static double magnitude(const LoadValue *value)
   return value->number;
 }
 
-const LoadType strength_reduction_load = {.everywhere = true, .create = create, .magnitude = magnitude};
+/** Returns the number by which strengths are divided. */
+static double at_factor(const LoadValue *value, double factor)
+{
+  return 1 + (value->number - 1) * factor;
+}
+
+const LoadType strength_reduction_load = {
+    .everywhere = true, .create = create, .magnitude = magnitude, .at_factor = at_factor};

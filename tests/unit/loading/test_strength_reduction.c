@@ -407,6 +407,44 @@ static void the_cut_off_of_tension_is_divided(void **state)
   breccia_model_destroy(&m);
 }
 
+/** The watched value of a strength reduction is the number by which strengths are divided: 1 before its stage, and
+ *  1 + (F - 1) h under a history h. The last words tell the same number as its peak. */
+static void the_watched_value_divides_strengths(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", path[64], command[64], line[256];
+  assert_non_null(mkdtemp(folder));
+  breccia_model *m = model_of(
+      UNITS "materials: {m: {" J2 "yield stress: 10}}\n"
+            "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 6]}}}}\n"
+            "peridynamics: {formulation: correspondence, space: plane strain, horizon: 2.015 spacings}\n"
+            "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, {gravity: [0, -1], history: {ramp to: 1}}]\n"
+            "solve: [{static: {increments: 1}}, {loads: [{name: weakening, strength reduction: 2.5, history: {table: "
+            "[[0, 0], [1, 0.4]]}}], static: {increments: 2}}]\n"
+            "watch: {w: {load: weakening, every: 1}}\npictures: []\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.size = sizeof run, .folder = folder};
+  if (breccia_model_run(m, &run, error)) fail_msg("%s", breccia_error_text(error));
+  holds_words(breccia_model_outcome(m), "load 'weakening': strength reduction, peak 1.6\n");
+  snprintf(path, sizeof path, "%s/w.csv", folder);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  assert_non_null(fgets(line, sizeof line, file));
+  static const double factors[] = {0, 0, 0.2, 0.4}, values[] = {1, 1, 1.3, 1.6};
+  for (int k = 0; k < 4; ++k) {
+    double factor, value;
+    assert_non_null(fgets(line, sizeof line, file));
+    assert_int_equal(sscanf(line, "%*[^,],%*[^,],%lf,%lf", &factor, &value), 2);
+    assert_near(factor, factors[k], 1e-12);
+    assert_near(value, values[k], 1e-12);
+  }
+  fclose(file);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -421,6 +459,7 @@ int main(void)
       cmocka_unit_test(a_stage_that_fails_at_once_leaves_the_factor_before),
       cmocka_unit_test(ground_turned_inside_out_has_no_factor),
       cmocka_unit_test(wrong_reductions_are_refused),
+      cmocka_unit_test(the_watched_value_divides_strengths),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
