@@ -220,7 +220,7 @@ static void tell_factor(const Search *s, double bears, double fails)
   printf("factor of safety: between %.4g and %.4g\n", borne, not );
   if (low->measure[STEP] > 0)
     printf("at %.0f spacings across the height of the ground's step it may be too high by some %.0f %%: halve the "
-           "spacing and compare\n",
+           "spacing and compare; 'breccia check' says whether it may be too low\n",
            low->measure[STEP], 100 * low->measure[EXCESS]);
 }
 

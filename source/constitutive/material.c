@@ -359,11 +359,17 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   return BRECCIA_OK;
 }
 
+/** Refuses a material for the reason that its law gives. Laws do not know the units of their numbers, which a length
+ *  that follows from the horizon does not show in the deck either. */
 static int refuse(const DeckReader *reader, const MaterialSpec *spec, const char *reason)
 {
   const char *name = spec->head.name, *quote = name ? "'" : ""; /* that of a laboratory test has none */
-  return node_error(reader->document, spec->head.node, reader->error, "material %s%s%s%s(%s): %s", quote,
-                    name ? name : "", quote, name ? " " : "", spec->model, reason);
+  char length[32], stress[32], units[96] = "";
+  units_name(reader->units, dimension_find("length"), length, sizeof length);
+  units_name(reader->units, dimension_find("stress"), stress, sizeof stress);
+  if (strstr(reason, "length of ")) snprintf(units, sizeof units, " (lengths are in %s, stresses in %s)", length, stress);
+  return node_error(reader->document, spec->head.node, reader->error, "material %s%s%s%s(%s): %s%s", quote,
+                    name ? name : "", quote, name ? " " : "", spec->model, reason, units);
 }
 
 int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length,

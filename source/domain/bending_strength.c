@@ -35,6 +35,11 @@ static const BendingRow cohesive_beams[] = {
     {"hybrid", "mazars", 0, {1.59, 1.41, 1.26}},
 };
 
+/* Laws with the curve of a measured law in tension; what bends cracks there long before it crushes. */
+static const struct {
+  const char *law, *measured;
+} same_curves[] = {{"fib-concrete", "exponential-softening"}};
+
 enum {
   BENDING_ROWS = sizeof bending_rows / sizeof *bending_rows,
   COHESIVE_BEAMS = sizeof cohesive_beams / sizeof *cohesive_beams
@@ -61,12 +66,21 @@ static double bending_at_depth(const BendingRow *row, double depth)
   return row->factor[BENDING_DEPTHS - 1];
 }
 
+/** Returns the measured law that softens in tension along the curve of a law. */
+static const char *bending_curve(const char *law)
+{
+  for (size_t k = 0; k < sizeof same_curves / sizeof *same_curves; ++k)
+    if (!strcmp(same_curves[k].law, law)) return same_curves[k].measured;
+  return law;
+}
+
 double bending_factor(const char *formulation, const char *law, double rows, double depth)
 {
+  const char *curve = bending_curve(law);
   const BendingRow *below = NULL;
   for (int k = 0; k < BENDING_ROWS; ++k) {
     const BendingRow *row = &bending_rows[k];
-    if (strcmp(row->formulation, formulation) != 0 || strcmp(row->law, law) != 0) continue;
+    if (strcmp(row->formulation, formulation) != 0 || strcmp(row->law, curve) != 0) continue;
     const double factor = bending_at_depth(row, depth);
     if (rows <= row->rows) {
       if (!below) return factor;
@@ -82,7 +96,7 @@ double bending_factor(const char *formulation, const char *law, double rows, dou
 double bending_cohesive(const char *formulation, const char *law, double depth)
 {
   for (int k = 0; k < COHESIVE_BEAMS; ++k)
-    if (!strcmp(cohesive_beams[k].formulation, formulation) && !strcmp(cohesive_beams[k].law, law))
+    if (!strcmp(cohesive_beams[k].formulation, formulation) && !strcmp(cohesive_beams[k].law, bending_curve(law)))
       return bending_at_depth(&cohesive_beams[k], depth);
   return NAN;
 }

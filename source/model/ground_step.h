@@ -13,4 +13,14 @@ double ground_step_spacings(const Body *body, const Loading *loading);
  *  @param[in] spacings  height of the step in spacings */
 double ground_step_excess(const Domain *domain, double spacings);
 
+/** Returns true if loads divide strengths in any stage. */
+bool ground_step_is_weakened(const Loading *loading);
+
+/** Returns the support `held: all` on which ground rests whose strengths loads can divide; NULL: there is none, or
+ * gravity does not act. Ground that yields beside the images of such a support carries less than its strength. */
+const LoadSpec *ground_step_held_base(const Domain *domain, const Loading *loading);
+
+/** Adds what is known of factors of safety that come out too low, as lines that begin with some words. */
+void ground_step_tell_low(const Domain *domain, const Loading *loading, const char *before, Text *text);
+
 #endif

@@ -162,7 +162,7 @@ static void describe_limit(const breccia_model *model, int material, Text *text)
   const Criterion *criterion = failure->criterion;
   text_add(text, material ? ", " : " ");
   if (!isfinite(failure->limit[material])) {
-    text_add(text, "none");
+    text_add(text, "bonds of '%s' do not break", d->materials[material].name);
     return;
   }
   text_add(text, "%g", failure->limit[material]);

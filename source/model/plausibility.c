@@ -3,7 +3,6 @@
 #include "constitutive/normal_lengths.h"
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
-#include "loading/support.h"
 #include "model/ground_step.h"
 #include <math.h>
 #include <stdlib.h>
@@ -215,6 +214,51 @@ static void check_spread(breccia_model *model, int k)
       m->name, wanted, unit, m->law_name, longest, unit, wanted / longest);
 }
 
+/** Returns true if the law of a material is one of ground: it has a cohesion, an angle of friction or an undrained
+ *  strength. */
+static bool is_ground(const breccia_model *model, const Material *m)
+{
+  static const ParameterRole roles[] = {PARAMETER_COHESION, PARAMETER_FRICTION_ANGLE, PARAMETER_UNDRAINED_STRENGTH,
+                                        PARAMETER_OCTAHEDRAL_STRENGTH};
+  bool any = false;
+  for (size_t k = 0; k < sizeof roles / sizeof *roles; ++k) any |= !isnan(plausibility_parameter(model, m, roles[k]));
+  return any;
+}
+
+/** Warns of a density of ground, or of what is as soft, that only ores and metals have: most often a unit weight in
+ *  kN/m3. */
+static void check_unit_weight(breccia_model *model, const Material *m)
+{
+  const double most = 5000, soft = 1e9, gravity = 9.81; /* SI: of ores, of rubber and of stiff clay, of the earth */
+  const double density = plausibility_in_si(model, "density", m->density);
+  if (!(density > most) || (!is_ground(model, m) && plausibility_in_si(model, "stress", material_young(m)) > soft))
+    return;
+  Text words = {0};
+  quantity_describe(density, "kg/m3", &words);
+  plausibility_say(model, section_node(plausibility_spec(model, m), "density"),
+                   "density: %s; no ground is heavier than %g kg/m3, nor is another material of this stiffness; if %.4g "
+                   "kN/m3 is its unit weight, its density is %.4g kg/m3",
+                   text_words(&words), most, density / 1000, density / gravity);
+  text_free(&words);
+}
+
+/** Warns of ground whose cohesion is close to its stiffness, and of ground in plane stress. */
+static void check_ground(breccia_model *model, const Material *m)
+{
+  const double most = 0.1; /* of Young's modulus; stiff clay has 0.01 */
+  const double cohesion = plausibility_parameter(model, m, PARAMETER_COHESION), young = material_young(m);
+  if (cohesion > most * young)
+    plausibility_say(model, plausibility_parameter_node(model, m, PARAMETER_COHESION),
+                     "cohesion: it is %.2g of Young's modulus; ground has a hundredth and less: look at the units of "
+                     "both",
+                     cohesion / young);
+  if (peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRESS && is_ground(model, m))
+    plausibility_say(model, section_node(model->spec->peridynamics, "space"),
+                     "space: plane stress is that of thin plates with free faces, in which ground of material '%s' is "
+                     "not held across; take 'plane strain'",
+                     m->name);
+}
+
 static void check_material(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
@@ -243,6 +287,8 @@ static void check_material(breccia_model *model, int k)
         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
         strength / material_young(m), 100 * strength / material_young(m));
   check_strength(model, m);
+  if (!odd) check_unit_weight(model, m);
+  check_ground(model, m);
   check_brittleness(model, m, region_made_of(&model->domain, m));
   check_spread(model, k);
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
@@ -692,23 +738,15 @@ static const char *ground_step_remedy(const breccia_model *model)
  * may let it come out too low. */
 static void describe_step(const breccia_model *model, Text *text)
 {
-  const MarginList *margins = &model->domain.body.margins;
-  bool any = false;
-  for (int k = 0; k < model->loading.count; ++k) any |= model->loading.loads[k].type == &strength_reduction_load;
-  const double step = any ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
+  const double step = ground_step_is_weakened(&model->loading)
+                          ? ground_step_spacings(&model->domain.body, &model->loading)
+                          : 0;
   if (step > 0)
     text_add(text,
              "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "
-             "out some %.0f %% too high; halve the spacing and compare%s\n",
+             "out some %.0f %% too high at the most; halve the spacing and compare%s\n",
              step, 100 * ground_step_excess(&model->domain, step), ground_step_remedy(model));
-  for (int k = 0; any && k < margins->count; ++k) {
-    if (margins->items[k].repeats || support_slides(&margins->items[k])) continue;
-    text_add(
-        text,
-        "  strength reduction: where ground slides along a face 'held: all' the factor may come out 25 %% too low; "
-        "add two layers to the body and hold them by 'displacement' instead of this support\n");
-    break;
-  }
+  if (step > 0) ground_step_tell_low(&model->domain, &model->loading, "  strength reduction: ", text);
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)

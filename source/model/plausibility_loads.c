@@ -339,6 +339,55 @@ static void check_twice(breccia_model *model)
   free(sorted);
 }
 
+/** Returns the mean height of the particles that are held along the last axis; NaN: none are. */
+static double loads_held_height(const breccia_model *model, int up)
+{
+  const Loading *loading = &model->loading;
+  double sum = 0, count = 0;
+  for (int k = 0; k < loading->constraint_count; ++k) {
+    const Constraint *c = &loading->constraints[k];
+    const Selection *on = &c->load->selection;
+    const bool goes_on = c->images && c->share > 0; /* a face that nothing holds */
+    if (c->value != 0 || c->order || c->row || goes_on || fabs(c->direction[up]) < 0.5) continue;
+    for (int64_t n = 0; n < on->count; ++n) sum += model->domain.particles->position[up][on->places[n]];
+    count += (double)on->count;
+  }
+  return count > 0 ? sum / count : NAN;
+}
+
+/** Warns of gravity that points up the last axis, away from what holds the body. */
+static void check_upwards(breccia_model *model, const Load *load)
+{
+  const Body *body = &model->domain.body;
+  const int up = body->dimensions - 1;
+  if (!plausibility_is_kind(load->spec, "gravity") || body->dimensions < 2) return;
+  const double *pull = load->spec->of[LOAD_gravity].point;
+  const double size = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2]);
+  if (!(pull[up] > 0.5 * size) || !(loads_held_height(model, up) < (body->low[up] + body->high[up]) / 2)) return;
+  plausibility_say(model, load->node,
+                   "gravity: it points upwards, along +%c, away from what holds the body, which hangs on it; give a "
+                   "negative number if %c counts upwards",
+                   "xyz"[up], "xyz"[up]);
+}
+
+/** Warns of strengths that are divided where nothing acts that could exceed them. */
+static void check_reduction(breccia_model *model)
+{
+  const Loading *loading = &model->loading;
+  const Node *reduction = NULL;
+  bool acts = model->spec->initial_stress.count > 0;
+  for (int k = 0; k < loading->count; ++k) {
+    const Load *load = &loading->loads[k];
+    if (load->type == &strength_reduction_load) reduction = load->node;
+    acts |= load->type->strain || (load->type->force && load_magnitude(load->spec) != 0);
+  }
+  for (int k = 0; k < loading->constraint_count; ++k) acts |= loading->constraints[k].value != 0;
+  if (reduction && !acts)
+    plausibility_say(model, reduction,
+                     "strength reduction: no load acts, so that strengths can be divided by any number; let 'gravity' or "
+                     "another load act from the stage before");
+}
+
 void plausibility_warn_of_loads(breccia_model *model)
 {
   for (int k = 0; k < model->loading.count; ++k) {
@@ -351,8 +400,10 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_sudden(model, &model->loading.loads[k]);
     check_sudden_strain(model, &model->loading.loads[k]);
     check_speed(model, &model->loading.loads[k]);
+    check_upwards(model, &model->loading.loads[k]);
     plausibility_warn_of_area(model, &model->loading.loads[k]);
   }
+  check_reduction(model);
   check_twice(model);
   check_grips(model);
 }

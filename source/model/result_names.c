@@ -12,6 +12,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+/** Adds the damage that laws of the deck have in place of the damage of other laws, as "bond damage" where points are on
+ *  particles. @return false: the name is not one of a damage, or no law has any */
+static bool advise_damage(const Domain *domain, const char *name, Text *advice)
+{
+  const char *last = strstr(name, " damage");
+  for (int m = 0; last && !strcmp(last, " damage") && m < domain->material_count; ++m) {
+    const Material *material = &domain->materials[m];
+    char word[64] = "";
+    for (int k = 0; material->law->history_is_damage && k < material->history_values; ++k) {
+      if (!material->law->history_is_damage(material->constants, k)) continue;
+      material->law->history_name(material->constants, k, word, sizeof word);
+      text_add(advice, "the laws of this deck do not have it; the damage of material '%s' is '%s'", material->name,
+               word);
+      return true;
+    }
+  }
+  return false;
+}
+
 static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *list)
 {
   int status = BRECCIA_OK;
@@ -28,11 +47,12 @@ static int check_names(const breccia_model *model, const Domain *domain, const T
       ++count;
     }
     Text advice = {0};
-    spelling_advice(&advice, names->items[k], fields, count, "the fields are");
-    status =
-        node_error(model->document, node, model->reader.error, "there is no field '%s'; %s%s", names->items[k],
-                   text_words(&advice),
-                   spelling_nearest(names->items[k], fields, count) ? "" : " and named histories of the materials");
+    if (!advise_damage(domain, names->items[k], &advice)) {
+      spelling_advice(&advice, names->items[k], fields, count, "the fields are");
+      if (!spelling_nearest(names->items[k], fields, count)) text_add(&advice, " and named histories of the materials");
+    }
+    status = node_error(model->document, node, model->reader.error, "there is no field '%s'; %s", names->items[k],
+                        text_words(&advice));
     text_free(&advice);
   }
   return status;

@@ -246,6 +246,25 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
                    s->clock->time_unit, s->next, s->clock->time_unit, tried, words, advice);
 }
 
+/** Returns true if forces act in the stage, and no prescribed motion changes in it. */
+static bool static_is_driven_by_forces(const Static *s)
+{
+  const Loading *loading = s->loading;
+  const double begin = s->clock->stage_time, end = s->clock->stage_end;
+  bool forces = false;
+  for (int k = 0; k < loading->count; ++k) {
+    const Load *load = &loading->loads[k];
+    forces |= load_acts(loading, load) && load->type->force && !load->type->brake && !load->type->energy &&
+              load_magnitude(load->spec) != 0 && load_factor(load, end) != 0;
+  }
+  for (int n = 0; n < loading->constraint_count; ++n) {
+    const Constraint *c = &loading->constraints[n];
+    if (load_acts(loading, c->load) && c->value != 0 && load_factor(c->load, end) != load_factor(c->load, begin))
+      return false;
+  }
+  return forces;
+}
+
 static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error)
 {
   char words[320];
@@ -254,10 +273,11 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
       error, BRECCIA_FAILURE,
       "static: with %lld broken bonds the body finds no equilibrium any more at time %g %s: %s; it has "
       "failed at this load%s go on with "
-      "a stage of 'explicit', or prescribe displacements instead of forces",
+      "a stage of 'explicit'%s",
       (long long)s->domain->broken_count, s->clock->time, s->clock->time_unit,
       describe_failure(s, outcome, words, sizeof words),
-      slow ? ", or few bonds hold it together and it comes to rest slowly: allow more 'relaxation iterations'," : ":");
+      slow ? ", or few bonds hold it together and it comes to rest slowly: allow more 'relaxation iterations'," : ":",
+      static_is_driven_by_forces(s) ? ", or prescribe displacements instead of forces" : "");
 }
 
 /** The next stage goes on from where the body is: at the last state of rest, without the bonds that have broken since. */
@@ -310,11 +330,16 @@ static void tell_jump_numbers(const Jumps *j, Text *warning)
 }
 
 /** Adds the jump at whose beginning a load or support has its largest force, and the remedy: the peak may lie within
- *  that jump. */
+ *  that jump. Adds nothing for a jump of no length, and in stages that reduce strengths. */
 static void tell_peak_in_jump(const Solver *run, Text *warning)
 {
+  const double least = 1e-6; /* of the time: shorter increments end where they begin, as a message tells times */
   const Static *s = run->own;
   const Jumps *j = &s->jumps;
+  if (loading_strength_reduction(run->loading, s->clock->time) !=
+      loading_strength_reduction(run->loading, run->records[s->clock->stage].begin))
+    return; /* forces of supports do not grow towards a peak */
+  if (j->peak_step && !(j->peak_end - j->peak_begin > least * j->peak_end)) return;
   if (!j->peak_step || resultants_largest_at(run, j->peak_begin) < 0) {
     text_add(warning, "; no load or support had its largest force at the beginning of any of these increments");
     return;

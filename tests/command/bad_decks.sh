@@ -258,7 +258,7 @@ refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 
   5:3 "material 'steel' (j2): 'saturation stress' must not lie below 'yield stress'"
 softening='model: bilinear-softening, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N\/m'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{$softening}/" \
-  4:3 "material 'clay' (bilinear-softening): a length of 0.7236 stores more at the peak than the fracture energy, so that the curve would snap back; it must be less than 2 E G_F / f_t^2 = 0.666667: take a finer spacing, if the units of these numbers are right"
+  4:3 "material 'clay' (bilinear-softening): a length of 0.7236, over which the fracture energy is spread, stores more than this energy at the peak, so that the curve would snap back; it must be less than 2 E G_F / f_t^2 = 0.666667: take a finer spacing, if the units of these numbers are right (lengths are in m, stresses in kPa)"
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic-brittle, density: 1, Young modulus: 1 GPa}/" \
   4:3 "give either 'tensile strength' or 'fracture energy'"
 

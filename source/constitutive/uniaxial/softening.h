@@ -44,7 +44,8 @@ static inline int softening_prepare(Softening *c, const double *values, double a
   if (left > 0) return 0;
   snprintf(
       reason, size,
-      "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must be "
+      "a length of %g, over which the fracture energy is spread, stores more than this energy at the peak, so that the "
+      "curve would snap back; it must be "
       "less than 2 E G_F / f_t^2 = %g: take a finer spacing, if the units of these numbers are right",
       values[SOFTENING_LENGTH], 2 * values[SOFTENING_ENERGY] / (c->strength * c->peak));
   return 1;

@@ -255,6 +255,7 @@ static void bending_strength_lies_between_measured_beams(void **state)
   assert_near(bending_factor("bond-based", law, sqrt(200), 0.3), (coarse + fine) / 2, 1e-12);
   assert_near(bending_factor("bond-based", law, 10, sqrt(0.3 * 0.6)),
               (coarse + bending_factor("bond-based", law, 10, 0.6)) / 2, 1e-12);
+  assert_true(bending_factor("bond-based", "fib-concrete", 10, 0.3) == coarse); /* its curve in tension is the same */
   assert_true(isnan(bending_factor("bond-based", "elastic-brittle", 10, 0.3)));
   assert_true(isnan(bending_factor("ordinary", law, 10, 0.3)));
 }
@@ -287,6 +288,10 @@ static void bending_strength_is_told(void **state)
   breccia_model_destroy(&m);
   m = model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 30, "bond-based");
   assert_null(strstr(breccia_model_overview(m), "a beam of ")); /* too short for a beam */
+  breccia_model_destroy(&m);
+  m = model_of(deck, "fib-concrete", "tensile strength: 3, fracture energy: 0.1, compressive strength: 30", "square", 60,
+               "bond-based");
+  assert_non_null(strstr(breccia_model_overview(m), "b: a beam of 20 rows, 0.6 E G_F/f_t^2 deep"));
   breccia_model_destroy(&m);
   m = model_of(deck, "link-damage", "Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 0.1", "hexagonal", 60,
                "micropolar");
