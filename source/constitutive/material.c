@@ -367,7 +367,8 @@ static int refuse(const DeckReader *reader, const MaterialSpec *spec, const char
   char length[32], stress[32], units[96] = "";
   units_name(reader->units, dimension_find("length"), length, sizeof length);
   units_name(reader->units, dimension_find("stress"), stress, sizeof stress);
-  if (strstr(reason, "length of ")) snprintf(units, sizeof units, " (lengths are in %s, stresses in %s)", length, stress);
+  if (strstr(reason, "length of "))
+    snprintf(units, sizeof units, " (lengths are in %s, stresses in %s)", length, stress);
   return node_error(reader->document, spec->head.node, reader->error, "material %s%s%s%s(%s): %s%s", quote,
                     name ? name : "", quote, name ? " " : "", spec->model, reason, units);
 }

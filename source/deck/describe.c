@@ -238,7 +238,8 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
       describe_parameters(tables[t].parameters, tables[t].count, text);
     }
   }
-  text_add(text, "\n## Quantities\n\n| dimension | example of a unit |\n|---|---|\n");
+  text_add(text, "\n## Quantities\n\nA plain number is one in the deck's `units`; of an angle it is one in degrees, "
+                 "so that `friction angle: 25` is 25 deg.\n\n| dimension | example of a unit |\n|---|---|\n");
   for (const Dimension *d = dimension_list(); d->name; ++d)
     if (*d->example) text_add(text, "| %s | `%s` |\n", d->name, d->example);
 }

@@ -123,11 +123,12 @@ const char *domain_softening_noun(const Domain *d)
   return particles ? "material points" : links == d->region_count ? "links" : "bonds";
 }
 
-void domain_find_softened(const Domain *d, SoftenedPoints *found)
+/** Goes through all points, or only until one is damaged. */
+static void softened_go_through(const Domain *d, bool only_first, SoftenedPoints *found)
 {
   *found = (SoftenedPoints){0};
   if (!softened_may_be(d)) return;
-  for (int64_t n = 0; n < d->particles->count; ++n) {
+  for (int64_t n = 0; n < d->particles->count && !(only_first && found->softened); ++n) {
     const int64_t place = d->particles->place_of[n];
     const Region *region = domain_region(d, place);
     if (points_on_particles(&region->points))
@@ -135,4 +136,16 @@ void domain_find_softened(const Domain *d, SoftenedPoints *found)
     else
       softened_take_bonds(d, region, place, found);
   }
+}
+
+void domain_find_softened(const Domain *d, SoftenedPoints *found)
+{
+  softened_go_through(d, false, found);
+}
+
+bool domain_has_softened(const Domain *d)
+{
+  SoftenedPoints found;
+  softened_go_through(d, true, &found);
+  return found.softened > 0;
 }

@@ -30,6 +30,9 @@ typedef struct SoftenedPoints {
  *  none. */
 const char *domain_softening_noun(const Domain *domain);
 
+/** Returns true if a point is damaged, by the points that domain_find_softened counts. */
+bool domain_has_softened(const Domain *domain);
+
 /** Counts the damaged points and lists the most damaged ones. Broken bonds, image particles outside of supports and
  *  bonds between two images do not count. */
 void domain_find_softened(const Domain *domain, SoftenedPoints *found);

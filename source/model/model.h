@@ -15,6 +15,8 @@ typedef struct Peaks { /* over all states written; infinite mean stresses: none 
   /** Strength reductions of states at rest (run_note_reduction): the first in which control of zero-energy modes held
    *  more than run_most_sliding, 0: none; the last before that, 0: none. */
   double reduction_held, reduction_free;
+  /** Time of the first state at rest in which a bond or point had softened [time] (run_note_softening); 0: none. */
+  double softened_time;
 } Peaks;
 
 /** The largest compressions that materials without a limit to it have reached, in the states written and at the end. */

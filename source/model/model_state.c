@@ -26,7 +26,8 @@ void model_state(breccia_model *model, StateList *list)
                  {"lowest finite strain", "1", &peaks->strain_low},
                  {"highest finite strain", "1", &peaks->strain_high},
                  {"strength reduction held by control", "1", &peaks->reduction_held},
-                 {"strength reduction before", "1", &peaks->reduction_free}};
+                 {"strength reduction before", "1", &peaks->reduction_free},
+                 {"time of the first softened point", "time", &peaks->softened_time}};
   domain_state(&model->domain, list);
   solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)

@@ -235,10 +235,11 @@ static void check_unit_weight(breccia_model *model, const Material *m)
     return;
   Text words = {0};
   quantity_describe(density, "kg/m3", &words);
-  plausibility_say(model, section_node(plausibility_spec(model, m), "density"),
-                   "density: %s; no ground is heavier than %g kg/m3, nor is another material of this stiffness; if %.4g "
-                   "kN/m3 is its unit weight, its density is %.4g kg/m3",
-                   text_words(&words), most, density / 1000, density / gravity);
+  plausibility_say(
+      model, section_node(plausibility_spec(model, m), "density"),
+      "density: %s; no ground is heavier than %g kg/m3, nor is another material of this stiffness; if %.4g "
+      "kN/m3 is its unit weight, its density is %.4g kg/m3",
+      text_words(&words), most, density / 1000, density / gravity);
   text_free(&words);
 }
 
@@ -738,9 +739,8 @@ static const char *ground_step_remedy(const breccia_model *model)
  * may let it come out too low. */
 static void describe_step(const breccia_model *model, Text *text)
 {
-  const double step = ground_step_is_weakened(&model->loading)
-                          ? ground_step_spacings(&model->domain.body, &model->loading)
-                          : 0;
+  const double step =
+      ground_step_is_weakened(&model->loading) ? ground_step_spacings(&model->domain.body, &model->loading) : 0;
   if (step > 0)
     text_add(text,
              "  strength reduction: the step of the ground is %.0f spacings high, with which a factor of safety comes "

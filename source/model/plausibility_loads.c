@@ -383,9 +383,10 @@ static void check_reduction(breccia_model *model)
   }
   for (int k = 0; k < loading->constraint_count; ++k) acts |= loading->constraints[k].value != 0;
   if (reduction && !acts)
-    plausibility_say(model, reduction,
-                     "strength reduction: no load acts, so that strengths can be divided by any number; let 'gravity' or "
-                     "another load act from the stage before");
+    plausibility_say(
+        model, reduction,
+        "strength reduction: no load acts, so that strengths can be divided by any number; let 'gravity' or "
+        "another load act from the stage before");
 }
 
 void plausibility_warn_of_loads(breccia_model *model)

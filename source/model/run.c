@@ -341,6 +341,7 @@ static int due(Run *run, Error *error)
   const ResultsSpec *r = model->spec->results;
   int status = write_histories(run, false, error);
   if (!status) status = run_note_reduction(model, error);
+  if (!status) run_note_softening(model);
   profiles_note(model->profiles, s);
   bool write = r->every > 0 && s->clock.step % r->every == 0;
   for (; model_has_passed(model, model->next_due, s->clock.time); ++model->next_due) write = true;

@@ -75,6 +75,11 @@ extern const double run_most_sliding;
  *  (Peaks). Does nothing in stages that do not end at rest.
  *  @return BRECCIA_OK; otherwise as domain_observe */
 int run_note_reduction(breccia_model *model, Error *error);
+/** Records the time of the first state at rest in which a bond or point has softened. Stages in motion have too many
+ *  steps to look at each. */
+void run_note_softening(breccia_model *model);
+/** Adds the values that loads had at a time, in brackets; nothing where no load has changed. */
+void run_tell_loads_at(const breccia_model *model, double time, Text *text);
 /** Adds to summary.json by what measures a body bears its loads, beside forces out of balance and kinetic energy. */
 void run_add_measures(const breccia_model *model, Text *text);
 /** Puts what the run did into words, for breccia_model_outcome. */

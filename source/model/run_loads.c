@@ -91,6 +91,28 @@ static void run_loads_name(const breccia_model *model, const Load *load, Text *t
   if (alike > 1) text_add(t, " of stage '%s'", solver_stage_name(&model->solver, load->first, stage, sizeof stage));
 }
 
+void run_tell_loads_at(const breccia_model *model, double time, Text *t)
+{
+  enum { FEW = 3 };
+  const Solver *s = &model->solver;
+  int told = 0;
+  for (int k = 0; k < model->loading.count && told < FEW; ++k) {
+    const Load *load = &model->loading.loads[k];
+    const bool begun = load->first <= s->clock.stage && time > load->begin,
+               ended = load->behind <= s->clock.stage && time > s->records[load->behind - 1].end;
+    const char *dimension, *kind = load_kind(load->spec, &dimension);
+    if (!begun || ended || load_magnitude(load->spec) == 0 || load->type->timeless ||
+        history_is_controlled(&load->history) || load_factor(load, time) == load_factor(load, load->begin))
+      continue;
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    text_add(t, "%s", told++ ? ", " : " (");
+    run_loads_name(model, load, t);
+    text_add(t, ": %s %.4g%s%s", kind, load_value(load->spec, load_factor(load, time)), *unit ? " " : "", unit);
+  }
+  if (told) text_add(t, ")");
+}
+
 static void run_loads_tell(const breccia_model *model, const Load *load, Text *t)
 {
   const char *dimension, *kind = load_kind(load->spec, &dimension);

@@ -1,6 +1,7 @@
 /* Measures of a body at the end of a run, by which 'breccia failure' judges whether it bears its loads: displacement,
  * the share of energy that is spent, what control of zero-energy modes holds, and how long loads have been steady.
  * solver/rest.h has forces out of balance and kinetic energy. */
+#include "domain/softened.h"
 #include "model/ground_step.h"
 #include "model/run.h"
 
@@ -26,6 +27,13 @@ YieldedEnergy run_yielded_energy(const Domain *d)
     sum.lasting += one.lasting;
   }
   return sum;
+}
+
+void run_note_softening(breccia_model *model)
+{
+  const Solver *s = &model->solver;
+  if (s->type->rests && !(model->peaks.softened_time > 0) && domain_has_softened(&model->domain))
+    model->peaks.softened_time = s->clock.time;
 }
 
 int run_note_reduction(breccia_model *model, Error *error)

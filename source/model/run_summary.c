@@ -1,4 +1,5 @@
 /* What a run did: summary.json, and the same in words. */
+#include "domain/softened.h"
 #include "domain/tensile_strength.h"
 #include "domain/toughness.h"
 #include "model/ground_step.h"
@@ -503,12 +504,16 @@ void run_tell_outcome(Run *run, int status)
   tell_strength(model, status == BRECCIA_FAILURE, t);
   double x[3];
   const BrokenBond *first = first_broken(d, x);
+  if (model->peaks.softened_time > 0) {
+    text_add(t, "%s: the first softened by time %.6g %s", domain_softening_noun(d), model->peaks.softened_time, time);
+    run_tell_loads_at(model, model->peaks.softened_time, t);
+    text_add(t, "\n");
+  }
   if (first) {
-    text_add(
-        t,
-        "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
-        (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
-        (long long)d->family.bonds / 2);
+    text_add(t, "first broken bond at step %lld, time %.6g %s", (long long)first->step, first->time, time);
+    run_tell_loads_at(model, first->time, t);
+    text_add(t, ", near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n", x[0], x[1], x[2], length,
+             (long long)d->broken_count, (long long)d->family.bonds / 2);
     if (run->wish->folder) add_other_causes(d, run->wish->folder, t);
     toughness_describe(d, model->spec->failure, model->units, t);
     tensile_strength_describe(d, t);

@@ -102,8 +102,9 @@ static const Field watch_fields[] = {
      .offset = offsetof(WatchSpec, load),
      .dimension = "load",
      .standard = "",
-     .meaning = "factor by the history and value of a named load; both 0 in stages in which it does not act. The value of a "
-                "strength reduction is the number by which strengths are divided, 1 where it does not act",
+     .meaning =
+         "factor by the history and value of a named load; both 0 in stages in which it does not act. The value of a "
+         "strength reduction is the number by which strengths are divided, 1 where it does not act",
      .group = 'A'},
     {.key = "reaction of",
      .kind = FIELD_NAME,

@@ -285,6 +285,9 @@ range=$(sed -n 's/.* increments the body gave way (\([0-9]*\) to \([0-9]*\)): .*
 peak=$(sed -n "s/.*; the largest force of load 'pull' is that at the beginning of increment \([0-9]*\), .*/\1/p" tears)
 [ "${peak:-0}" -ge "${range%% *}" ] && [ "$peak" -le "${range##* }" ] || fail "numbers of increments, the peak among them: $(cat tears)"
 contains "what to do" "$(cat tears)" "compare with 'increments: 20'"
+# 2.7 MPa of the weak strip are 0.016 mm of its 180 mm between grips, but for the share of bonds: the last words name the load then.
+grep -q "^bonds: the first softened by time 0\.[234]* s (load 'pull': displacement 0\.01[0-9]* mm)$" out || fail "the first softened bond: $(cat out)"
+grep -q "^first broken bond at step [0-9]*, time 0\.9[0-9]* s (load 'pull': displacement 0\.04[0-9]* mm), near " out || fail "the load of the first broken bond: $(cat out)"
 grep -q increments_by_ $s && fail "an elastic body at rest gave way: $(cat $s)"
 # Forces within the tolerance of equilibrium do work of either sign: a few nJ of 16 J are not worth a word.
 awk -v d="$(figures cracks/summary.json damping)" -v e="$(figures cracks/summary.json external)" 'BEGIN {exit !(d * d < 1e-12 * e * e)}' ||

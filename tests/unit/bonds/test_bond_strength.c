@@ -289,8 +289,8 @@ static void bending_strength_is_told(void **state)
   m = model_of(deck, "bilinear-softening", "tensile strength: 3, fracture energy: 0.1", "square", 30, "bond-based");
   assert_null(strstr(breccia_model_overview(m), "a beam of ")); /* too short for a beam */
   breccia_model_destroy(&m);
-  m = model_of(deck, "fib-concrete", "tensile strength: 3, fracture energy: 0.1, compressive strength: 30", "square", 60,
-               "bond-based");
+  m = model_of(deck, "fib-concrete", "tensile strength: 3, fracture energy: 0.1, compressive strength: 30", "square",
+               60, "bond-based");
   assert_non_null(strstr(breccia_model_overview(m), "b: a beam of 20 rows, 0.6 E G_F/f_t^2 deep"));
   breccia_model_destroy(&m);
   m = model_of(deck, "link-damage", "Poisson ratio: 0.2, tensile stretch: 1e-4, fracture energy: 0.1", "hexagonal", 60,

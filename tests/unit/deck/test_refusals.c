@@ -15,6 +15,7 @@ static const Parts good = {
 };
 
 #define PLATE "material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: {box: {particles: [9, 7]}}"
+#define DISC "material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: "
 #define CONTROLLED "{on: {face: x+, layers: 1}, traction: [1, 0, 0], history: {controlled: yes}}"
 #define HELD "{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}"
 
@@ -39,6 +40,14 @@ static const struct Case {
      "particles: expected"},
     {{.more = "results: {fields: damage}"}, 6, "fields: expected"},
     {{.more = "results: {fields: [[damage]]}"}, 6, "fields: expected words"},
+    {{.more = "results: {fields: [bond damage]}"}, 6, "there is no field 'bond damage'; the fields are"},
+    {{.material =
+          "materials: {m: {model: mazars, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, tensile strength: "
+          "1, fracture energy: 1e-4}}",
+      .more = "results: {fields: [bond damage]}"},
+     6,
+     "there is no field 'bond damage'; the laws of this deck do not have it; the damage of material 'm' is 'material "
+     "damage'"},
     {{.loads = "loads: [{on: {all: yes}, body force: [1, 0, 0], history: {table: [[0, 1], 2]}}]"},
      4,
      "table: expected"},
@@ -63,6 +72,10 @@ static const struct Case {
     {{.body = "body: {b: {material: m, spacing: 0.1, shape: {cylinder: {from: [1, 1, 1], to: [1, 1, 1], radius: 1}}}}"},
      2,
      "'from' and 'to' are the same point"},
+    {{.body = "body: {b: {" DISC "{cylinder: {from: [1, 1], radius: 1}}}}",
+      .horizon = "peridynamics: {space: plane strain}"},
+     2,
+     "cylinder: missing key 'to' (centre of the other end; a disc in the plane is a 'sphere')"},
     {{.body = "body: {b: {material: m, spacing: 0.1, shape: {polygon: {corners: [[0, 0], [1, 1]]}}}}"},
      2,
      "polygon: needs at least 3 corners"},

@@ -108,7 +108,8 @@ static const struct {
     /* unit weights in place of densities, in soft materials and in ground */
     {"m", ELASTIC("4900 kg/m3", "20 MPa"), "", NULL},
     {"m", ELASTIC("18", "20 MPa"), "",
-     "density: 18000 kg/m3; no ground is heavier than 5000 kg/m3, nor is another material of this stiffness; if 18 kN/m3 "
+     "density: 18000 kg/m3; no ground is heavier than 5000 kg/m3, nor is another material of this stiffness; if 18 "
+     "kN/m3 "
      "is its unit weight, its density is 1835 kg/m3"},
     {"m", ELASTIC("18", "1.1 GPa"), "", NULL},
     {"m", COULOMB("4.9", "2 GPa", "1"), "", NULL},
@@ -696,7 +697,8 @@ static void ground_beyond_its_strength_is_told(void **state)
         law, grounds[k].rows, grounds[k].space, grounds[k].more, grounds[k].gravity, grounds[k].first, given);
     free(law);
     const char *words = breccia_model_warnings(m), *found = strstr(words, "is beyond its strength");
-    if (!grounds[k].told && (grounds[k].gravity < 0 ? *words != 0 : found != NULL)) fail_msg("ground %d: no warning was expected: %s", (int)k, words);
+    if (!grounds[k].told && (grounds[k].gravity < 0 ? *words != 0 : found != NULL))
+      fail_msg("ground %d: no warning was expected: %s", (int)k, words);
     if (grounds[k].told && (!found || !strstr(found, grounds[k].told)))
       fail_msg("ground %d: expected '%s', found: %s", (int)k, grounds[k].told, words);
     breccia_model_destroy(&m);
@@ -884,14 +886,15 @@ static void bases_that_weaken_ground_are_told(void **state)
                {"y+", "all", ", {strength reduction: 2}", "plane strain", NULL},
                {"y-", "across", "", "plane stress", plate}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    breccia_model *m = model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {" COULOMB(
-                                    "2", "30 MPa", "1") "}}\n"
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials: {m: {" COULOMB(
+            "2", "30 MPa", "1") "}}\n"
                                 "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: "
                                 "{particles: [8, 6]}}}}\n"
                                 "peridynamics: {space: %s}\nsolve: {static: {increments: 1}}\n"
                                 "loads: [{on: {face: %s}, support: {held: %s}}, {on: {nearest: [0.045, 0.025]}, "
                                 "displacement: [0, 0]}, {gravity: [0, -9.81]}%s]\n",
-                                cases[k].space, cases[k].face, cases[k].held, cases[k].more);
+        cases[k].space, cases[k].face, cases[k].held, cases[k].more);
     const char *words = breccia_model_warnings(m);
     if (cases[k].warning ? !strstr(words, cases[k].warning) : strstr(words, base) || strstr(words, plate))
       fail_msg("case %zu: %s", k, words);
@@ -905,21 +908,22 @@ static void factors_that_are_too_low_are_told(void **state)
   (void)state;
   static const struct {
     const char *formulation, *base, *held, *gentle;
-  } cases[] = {{"correspondence", "support: {held: all}", "factors of clay whose slip circle touches such a base", NULL},
-               {"correspondence", "support: {held: across}", NULL, NULL},
-               {"ordinary", "support: {held: all}", "held in all directions by the support in line 5",
-                "factors of gentle slopes of clay came out 4 to 16 % too low in 'ordinary'"}};
+  } cases[] = {
+      {"correspondence", "support: {held: all}", "factors of clay whose slip circle touches such a base", NULL},
+      {"correspondence", "support: {held: across}", NULL, NULL},
+      {"ordinary", "support: {held: all}", "held in all directions by the support in line 5",
+       "factors of gentle slopes of clay came out 4 to 16 % too low in 'ordinary'"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    breccia_model *m =
-        model_of("units: {length: m, force: kN, time: s}\n"
-                 "materials: {m: {model: j2, density: 2, Young modulus: 3e4, Poisson ratio: 0.45, yield stress: 60}}\n"
-                 "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {polygon: {corners: [[0, 0], "
-                 "[12, 0], [12, 5], [6, 9], [0, 9]]}}}}\n"
-                 "peridynamics: {formulation: %s, space: plane strain}\n"
-                 "loads: [{on: {face: y-}, %s}, {on: {face: x-}, support: {held: across}}, {gravity: [0, -9.81]}, {strength "
-                 "reduction: 2}]\n"
-                 "solve: {static: {increments: 1}}\n",
-                 cases[k].formulation, cases[k].base);
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: j2, density: 2, Young modulus: 3e4, Poisson ratio: 0.45, yield stress: 60}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {polygon: {corners: [[0, 0], "
+        "[12, 0], [12, 5], [6, 9], [0, 9]]}}}}\n"
+        "peridynamics: {formulation: %s, space: plane strain}\n"
+        "loads: [{on: {face: y-}, %s}, {on: {face: x-}, support: {held: across}}, {gravity: [0, -9.81]}, {strength "
+        "reduction: 2}]\n"
+        "solve: {static: {increments: 1}}\n",
+        cases[k].formulation, cases[k].base);
     const char *words = breccia_model_plausibility(m);
     assert_non_null(strstr(words, "the step of the ground is 4 spacings high"));
     if (cases[k].held ? !strstr(words, cases[k].held) : strstr(words, "held in all directions") != NULL)
