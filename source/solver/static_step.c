@@ -336,8 +336,8 @@ static void tell_peak_in_jump(const Solver *run, Text *warning)
   const double least = 1e-6; /* of the time: shorter increments end where they begin, as a message tells times */
   const Static *s = run->own;
   const Jumps *j = &s->jumps;
-  if (loading_strength_reduction(run->loading, s->clock->time) !=
-      loading_strength_reduction(run->loading, run->records[s->clock->stage].begin))
+  if (loading_strength_reduction(run->loading, s->clock->stage, s->clock->time) !=
+      loading_strength_reduction(run->loading, s->clock->stage, run->records[s->clock->stage].begin))
     return; /* forces of supports do not grow towards a peak */
   if (j->peak_step && !(j->peak_end - j->peak_begin > least * j->peak_end)) return;
   if (!j->peak_step || resultants_largest_at(run, j->peak_begin) < 0) {
