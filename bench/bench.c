@@ -259,9 +259,9 @@ static bool same_bits(Domain *d, const int *threads, int threads_count)
     force_seconds(d, threads[k]);
     for (int c = 0; c < 3; ++c)
       if (!k)
-        memcpy(reference + (int64_t)c * p->places, p->internal[c], bytes);
+        memcpy(reference + (int64_t)c * p->places, p->internal.row[c], bytes);
       else
-        same &= !memcmp(reference + (int64_t)c * p->places, p->internal[c], bytes);
+        same &= !memcmp(reference + (int64_t)c * p->places, p->internal.row[c], bytes);
   }
   free(reference);
   return same;

@@ -111,9 +111,9 @@ enum { FOUR_CHAINS = 6, EIGHT_CHAINS = 8 };
 #define ARITHMETIC(name, lanes, CHAINS)                                                                                \
   double name(int64_t rounds)                                                                                          \
   {                                                                                                                    \
-    typedef double Vector __attribute__((vector_size(8 * (lanes))));                                                   \
-    Vector fused[CHAINS], plain[CHAINS], x = (Vector){0} + 1.000000001, y = (Vector){0} + 1e-9;                        \
-    for (int k = 0; k < CHAINS; ++k) fused[k] = plain[k] = (Vector){0} + k;                                            \
+    typedef double Wide __attribute__((vector_size(8 * (lanes))));                                                     \
+    Wide fused[CHAINS], plain[CHAINS], x = (Wide){0} + 1.000000001, y = (Wide){0} + 1e-9;                              \
+    for (int k = 0; k < CHAINS; ++k) fused[k] = plain[k] = (Wide){0} + k;                                              \
     for (int64_t r = 0; r < rounds; ++r)                                                                               \
       for (int k = 0; k < CHAINS; ++k) {                                                                               \
         fused[k] = fused[k] * x + y;                                                                                   \

@@ -111,7 +111,7 @@ static double compare(const char *folder, int n, const char *style)
     const int64_t number = id - 1;
     const int32_t place = p->place_of[number];
     for (int k = 0; k < 3; ++k) {
-      p->displacement[k][place] = x[k] - p->position[k][place];
+      p->displacement.row[k][place] = x[k] - p->position[k][place];
       theirs[3 * number + k] = force[k] / density;
     }
     ++read;
@@ -122,7 +122,7 @@ static double compare(const char *folder, int n, const char *style)
   domain_evaluate(&model->domain, NULL);
   for (int32_t i = 0; i < p->count; ++i)
     for (int k = 0; k < 3; ++k) {
-      double own = p->internal[k][p->place_of[i]] / p->density[p->place_of[i]];
+      double own = p->internal.row[k][p->place_of[i]] / p->density[p->place_of[i]];
       most = fmax(most, fabs(own));
       off = fmax(off, fabs(own - theirs[3 * i + k]));
     }

@@ -68,26 +68,20 @@ static breccia_model *load(const char *folder, const BenchBody *body, const Case
 }
 
 typedef struct Vectors {
-  double *force[MOTIONS], *moved[MOTIONS];
+  Vector force[1], moved[1];
 } Vectors;
 
 static void make(const breccia_model *model, Vectors *v)
 {
   const Particles *p = model->domain.particles;
-  for (int k = 0; k < 3; ++k) {
-    v->force[k] = places_array(p->places, "bench", NULL);
-    v->moved[k] = places_array(p->places, "bench", NULL);
-    if (!v->force[k] || !v->moved[k]) abort();
-    for (int64_t i = 0; i < p->places; ++i) v->force[k][i] = p->volume[i] * p->external[k][i];
-  }
+  if (!vector_create(v->force, &p->space, "bench", NULL) || !vector_create(v->moved, &p->space, "bench", NULL)) abort();
+  vector_weigh(v->force, p->volume, &p->external);
 }
 
 static void drop(Vectors *v)
 {
-  for (int k = 0; k < 3; ++k) {
-    places_free(&v->force[k]);
-    places_free(&v->moved[k]);
-  }
+  vector_destroy(v->force);
+  vector_destroy(v->moved);
 }
 
 /** A line of what the system tells of this process, in bytes. */

@@ -50,7 +50,7 @@ static void find_openings(const breccia_model *model, double *opening)
   double mean[TORN_COLUMNS] = {0};
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    mean[(int)lround(p->position[0][i] / spacing)] += p->displacement[0][i] * TORN_COLUMNS / (double)p->count;
+    mean[(int)lround(p->position[0][i] / spacing)] += p->displacement.row[0][i] * TORN_COLUMNS / (double)p->count;
   }
   for (int k = 0; k + 1 < TORN_COLUMNS; ++k) opening[k] = mean[k + 1] - mean[k];
 }

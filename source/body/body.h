@@ -54,7 +54,7 @@ static inline bool body_outside(const Body *body, int64_t number)
 /** Returns true if row k of motion can differ from 0: displacements along the axes of the body, and rotations. */
 static inline bool body_moves_along(const Body *body, int k)
 {
-  return k < body->dimensions || k >= ROTATION;
+  return k < body->dimensions || k >= body->particles.space.rotation;
 }
 
 /** The particle inside of which the particle of a number is an image, or the image of an image; itself, where it stands inside. By numbers. */

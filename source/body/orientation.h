@@ -16,13 +16,13 @@ LANES_INLINE Lanes dot_lanes(const Lanes a[3], const Lanes b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/** Unit quaternions, but for roundings, of places from `place` on: of `orientation` and the rotation since as it stands in `displacement`. */
-LANES_INLINE void turned_by(double *const orientation[4], double *const *displacement, int64_t place, Lanes q[4])
+/** Unit quaternions, but for roundings, of places from `place` on: of `orientation` and the rotation since, in three rows. */
+LANES_INLINE void turned_by(double *const orientation[4], double *const *rotation, int64_t place, Lanes q[4])
 {
   Lanes turn[3], o[4], across[3], square = lanes_set(0), sine, cosine;
   for (int k = 0; k < 4; ++k) o[k] = lanes_load(orientation[k] + place);
   for (int k = 0; k < 3; ++k) {
-    turn[k] = lanes_load(displacement[ROTATION + k] + place);
+    turn[k] = lanes_load(rotation[k] + place);
     square += turn[k] * turn[k];
   }
   const Lanes half = lanes_set(0.5) * lanes_root(square);

@@ -60,20 +60,23 @@ int particles_create(Particles *particles, int64_t slices, int64_t count, Error 
 {
   *particles = (Particles){.slices = slices, .count = count, .places = slices * SLICE};
   int failed = 0;
+  VectorSpace *space = &particles->space;
+  *space = (VectorSpace){.rows = 3, .rotation = 3, .places = particles->places};
   for (int k = 0; k < 3; ++k) {
+    space->row[k] = (VectorRow){ROW_DISPLACEMENT, k};
     failed |= !(particles->position[k] = places_array(particles->places, "positions", error));
-    failed |= !(particles->displacement[k] = places_array(particles->places, "displacements", error));
-    failed |= !(particles->velocity[k] = places_array(particles->places, "velocities", error));
-    failed |= !(particles->internal[k] = places_array(particles->places, "internal forces", error));
-    failed |= !(particles->external[k] = places_reserved(particles->places, "external forces", error));
   }
-  particles->motions = 3;
+  failed |= !vector_create(&particles->displacement, space, "displacements", error);
+  failed |= !vector_create(&particles->velocity, space, "velocities", error);
+  failed |= !vector_create(&particles->internal, space, "internal forces", error);
+  failed |= !vector_reserve(&particles->external, space, "external forces", error);
+  particles->inertia.space = space;
   failed |= !(particles->volume = places_array(particles->places, "volumes", error));
   failed |= !(particles->density = places_array(particles->places, "densities", error));
   failed |= !(particles->number = memory_zeroed((size_t)particles->places, sizeof(int32_t), "numbers", error));
   failed |= !(particles->place_of = memory_zeroed((size_t)count, sizeof(int32_t), "numbers", error));
   failed |= !(particles->block = memory_zeroed((size_t)slices, sizeof(int32_t), "block of each slice", error));
-  for (int k = 0; k < 3; ++k) particles->inertia[k] = particles->density;
+  for (int k = 0; k < 3; ++k) particles->inertia.row[k] = particles->density;
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -83,12 +86,10 @@ void particles_destroy(Particles *particles)
     places_free(&particles->position[k]);
     places_free(&particles->zero[k]);
   }
-  for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&particles->displacement[k]);
-    places_free(&particles->velocity[k]);
-    places_free(&particles->internal[k]);
-    places_free(&particles->external[k]);
-  }
+  vector_destroy(&particles->displacement);
+  vector_destroy(&particles->velocity);
+  vector_destroy(&particles->internal);
+  vector_destroy(&particles->external);
   for (int k = 0; k < 4; ++k) places_free(&particles->orientation[k]);
   places_free(&particles->rotary);
   free(particles->unturned);
@@ -104,13 +105,14 @@ void particles_destroy(Particles *particles)
 int particles_make_rotations(Particles *p, int dimensions, Error *error)
 {
   int failed = !(p->rotary = places_array(p->places, "rotational inertia", error));
-  p->motions = dimensions == 3 ? 6 : 4;
-  for (int k = ROTATION; k < p->motions; ++k) {
-    failed |= !(p->displacement[k] = places_array(p->places, "rotations", error));
-    failed |= !(p->velocity[k] = places_array(p->places, "angular velocities", error));
-    failed |= !(p->internal[k] = places_array(p->places, "internal moments", error));
-    failed |= !(p->external[k] = places_array(p->places, "external moments", error));
-    p->inertia[k] = p->rotary;
+  p->space.rows = dimensions == 3 ? 6 : 4;
+  for (int k = p->space.rotation; k < p->space.rows; ++k) {
+    p->space.row[k] = (VectorRow){ROW_ROTATION, dimensions == 3 ? k - p->space.rotation : 2};
+    failed |= !(p->displacement.row[k] = places_array(p->places, "rotations", error));
+    failed |= !(p->velocity.row[k] = places_array(p->places, "angular velocities", error));
+    failed |= !(p->internal.row[k] = places_array(p->places, "internal moments", error));
+    failed |= !(p->external.row[k] = places_array(p->places, "external moments", error));
+    p->inertia.row[k] = p->rotary;
   }
   for (int k = 0; k < 4 && dimensions == 3; ++k)
     failed |= !(p->orientation[k] = places_array(p->places, "orientations", error));
@@ -125,13 +127,14 @@ static void take_rotations(Particles *p, int64_t first, int64_t last)
   for (int64_t i = first; i < last; i += LANES) {
     Lanes q[4], square = lanes_set(0);
     LaneMask stays = ~(LaneMask){0}; /* those at rest, to the bit */
-    turned_by(p->orientation, p->displacement, i, q);
+    turned_by(p->orientation, p->displacement.row + p->space.rotation, i, q);
     for (int k = 0; k < 4; ++k) square += q[k] * q[k];
-    for (int k = 0; k < 3; ++k) stays &= (LaneMask)(lanes_load(p->displacement[ROTATION + k] + i) == lanes_set(0));
+    for (int k = 0; k < 3; ++k)
+      stays &= (LaneMask)(lanes_load(p->displacement.row[p->space.rotation + k] + i) == lanes_set(0));
     const Lanes by_length = lanes_set(1) / lanes_root(square);
     for (int k = 0; k < 4; ++k)
       lanes_store(p->orientation[k] + i, lanes_choose(stays, lanes_load(p->orientation[k] + i), by_length * q[k]));
-    for (int k = 0; k < 3; ++k) lanes_store(p->displacement[ROTATION + k] + i, lanes_set(0));
+    for (int k = 0; k < 3; ++k) lanes_store(p->displacement.row[p->space.rotation + k] + i, lanes_set(0));
   }
 }
 
@@ -143,10 +146,10 @@ void particles_take_rotations(Particles *p, int64_t first, int64_t last)
 void particles_rotation(const Particles *p, int32_t place, double rotation[3])
 {
   for (int k = 0; k < 3; ++k) rotation[k] = 0;
-  if (p->motions == 4) rotation[2] = p->displacement[ROTATION][place];
-  if (p->motions < 6) return;
+  if (p->space.rows == 4) rotation[2] = p->displacement.row[p->space.rotation][place];
+  if (p->space.rows < 6) return;
   double q[4];
-  particles_orientation(p, p->displacement, place, q);
+  particles_orientation(p, p->displacement.row, place, q);
   const double size = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]), sign = q[0] < 0 ? -1 : 1;
   for (int k = 0; k < 3 && size > 0; ++k) rotation[k] = 2 * atan2(size, fabs(q[0])) * sign * q[1 + k] / size;
 }
@@ -158,28 +161,28 @@ int particles_make_zero(Particles *p, Error *error)
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-void particles_state_rotations(const Particles *p, const char *name, const char *unit, StateRole role,
-                               double *const values[MOTIONS], StateList *list)
+void particles_state_rotations(const char *name, const char *unit, StateRole role, const Vector *vector,
+                               StateList *list)
 {
   static const char *const parts[] = {"x", "y", "z"};
-  for (int k = ROTATION; k < p->motions; ++k)
+  for (int k = vector->space->rotation; k < vector->space->rows; ++k)
     state_add(list,
               &(StateRow){.unit = unit,
                           .kind = STATE_NUMBERS,
                           .entity = STATE_OF_PLACE,
                           .role = role,
-                          .count = p->places,
-                          .values = values[k]},
-              name, parts[p->motions == 4 ? 2 : k - ROTATION]);
+                          .count = vector->space->places,
+                          .values = vector->row[k]},
+              name, parts[vector->space->row[k].axis]);
 }
 
 static void state_rotations(Particles *p, StateList *list)
 {
   static const char *const parts[] = {"1", "x", "y", "z"};
-  particles_state_rotations(p, p->motions == 4 ? "rotation" : "rotation of the step", "1", STATE_TRIED, p->displacement,
-                            list);
-  particles_state_rotations(p, "angular velocity", "angular velocity", STATE_TRIED, p->velocity, list);
-  particles_state_rotations(p, "external moment", "stress", STATE_COMMITTED, p->external, list);
+  particles_state_rotations(p->space.rows == 4 ? "rotation" : "rotation of the step", "1", STATE_TRIED,
+                            &p->displacement, list);
+  particles_state_rotations("angular velocity", "angular velocity", STATE_TRIED, &p->velocity, list);
+  particles_state_rotations("external moment", "stress", STATE_COMMITTED, &p->external, list);
   for (int k = 0; k < 4 && p->orientation[0]; ++k)
     state_add(list,
               &(StateRow){.unit = "1",
@@ -194,10 +197,10 @@ static void state_rotations(Particles *p, StateList *list)
 void particles_state(Particles *p, StateList *list)
 {
   state_add_vector(list, "position", "length", STATE_SHOWN, p->position, p->places);
-  state_add_vector(list, "displacement", "length", STATE_TRIED, p->displacement, p->places);
-  state_add_vector(list, "velocity", "velocity", STATE_TRIED, p->velocity, p->places);
+  state_add_vector(list, "displacement", "length", STATE_TRIED, p->displacement.row, p->places);
+  state_add_vector(list, "velocity", "velocity", STATE_TRIED, p->velocity.row, p->places);
   if (p->zero[0]) state_add_vector(list, "displacement at zero", "length", STATE_COMMITTED, p->zero, p->places);
-  state_add_vector(list, "external force", "force per volume", STATE_COMMITTED, p->external, p->places);
+  state_add_vector(list, "external force", "force per volume", STATE_COMMITTED, p->external.row, p->places);
   state_rotations(p, list);
   const StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = p->places};
   StateRow volume = row, density = row;

@@ -10,34 +10,32 @@
 #include "base/lanes.h"
 #include "base/memory.h"
 #include "base/state.h"
+#include "body/vector.h"
 #include <stdint.h>
-
-/* Rows of motion that a place has at most: displacements along x, y, z; rotations about z in the plane, about x, y, z in space. */
-enum { MOTIONS = 6, ROTATION = 3 };
 
 typedef struct Particles {
   int64_t count, places, slices;
-  int motions; /* of each place: 3, and with rotations 4 in the plane, 6 in space; rows beyond are NULL */
+  VectorSpace space; /* of motions: displacements, then rotations where there are any */
   double *position[3];
   /* Rotations are angles [rad] in the plane. In space they are rotation vectors from `orientation` on, which takes them in at the end of each
    * step, and velocities are angular velocities about the axes of space. */
-  double *displacement[MOTIONS], *velocity[MOTIONS];
-  double *internal[MOTIONS]; /* force per volume from bonds, moment per volume */
-  double *external[MOTIONS]; /* force per volume from loads, moment per volume */
-  double *zero[3];           /* displacements that are shown as none; NULL: 0 */
-  double *volume;            /* 0 in unused places */
+  Vector displacement, velocity;
+  Vector internal; /* force per volume from bonds, moment per volume */
+  Vector external; /* force per volume from loads, moment per volume */
+  double *zero[3]; /* displacements that are shown as none; NULL: 0 */
+  double *volume;  /* 0 in unused places */
   double *density;
   double *
       free_strain; /* alike in all directions in which bonds lie, where nothing hinders it (domain/strains.c); NULL: none */
   const double *
       free_growth; /* while bonds break: by how much loads let free strains grow in the step; NULL: not at all. Not owned */
-  double *rotary;           /* rotational inertia per volume; NULL without rotations */
-  double *inertia[MOTIONS]; /* per volume, of each row: density or rotary. Not owned */
-  uint8_t *unturned;        /* [slices] of formulations without rotations, where others have them; NULL: none */
-  double *orientation[4];   /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */
-  int32_t *number;          /* [places] global number or -1 */
-  int32_t *place_of;        /* [count] place of a number */
-  int32_t *block;           /* [slices] which block of the deck */
+  double *rotary;         /* rotational inertia per volume; NULL without rotations */
+  Vector inertia;         /* per volume: rows are `density` or `rotary`. Not owned */
+  uint8_t *unturned;      /* [slices] of formulations without rotations, where others have them; NULL: none */
+  double *orientation[4]; /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */
+  int32_t *number;        /* [places] global number or -1 */
+  int32_t *place_of;      /* [count] place of a number */
+  int32_t *block;         /* [slices] which block of the deck */
 } Particles;
 
 /** Zeroed array over places with the spare entries that Particles promises. Freed with places_free. */
@@ -52,13 +50,19 @@ void particles_destroy(Particles *particles);
 /** Gives all places rotations. Their inertia is 0 yet. @param[in] dimensions  of the body */
 int particles_make_rotations(Particles *particles, int dimensions, Error *error);
 
-/** Strain at which a bond carries nothing: the mean of both ends'. */
-/** Whether a particle has a rotation. */
-static inline bool particles_turn(const Particles *p, int64_t place)
+/** Returns true if places have rotations. */
+static inline bool particles_have_rotations(const Particles *p)
 {
-  return p->motions > ROTATION && !(p->unturned && p->unturned[place / SLICE]);
+  return p->space.rotation < p->space.rows;
 }
 
+/** Returns true if a particle has a rotation. */
+static inline bool particles_turn(const Particles *p, int64_t place)
+{
+  return particles_have_rotations(p) && !(p->unturned && p->unturned[place / SLICE]);
+}
+
+/** Strain at which a bond carries nothing: the mean of both ends'. */
 static inline double particles_free_strain(const Particles *p, int64_t a, int64_t b)
 {
   return p->free_strain ? 0.5 * (p->free_strain[a] + p->free_strain[b]) : 0;
@@ -73,7 +77,7 @@ static inline void particles_orientation(const Particles *p, double *const *disp
   double turn[3], square = 0, o[4];
   for (int k = 0; k < 4; ++k) o[k] = p->orientation[k][place];
   for (int k = 0; k < 3; ++k) {
-    turn[k] = displacement[ROTATION + k][place];
+    turn[k] = displacement[p->space.rotation + k][place];
     square += turn[k] * turn[k];
   }
   /* (cosine, half of sine over the angle, times the vector) of half the angle */
@@ -96,15 +100,15 @@ int particles_make_zero(Particles *particles, Error *error);
 /** Displacement of a place as it is shown: from `zero` on. */
 static inline double particles_moved(const Particles *particles, int k, int32_t place)
 {
-  return particles->zero[k] ? particles->displacement[k][place] - particles->zero[k][place]
-                            : particles->displacement[k][place];
+  return particles->zero[k] ? particles->displacement.row[k][place] - particles->zero[k][place]
+                            : particles->displacement.row[k][place];
 }
 
 /** Rows of positions, motion, forces of loads, volumes and densities. */
 void particles_state(Particles *particles, StateList *list);
 /** Adds the rows of a vector that belong to rotations; none without them. */
-void particles_state_rotations(const Particles *particles, const char *name, const char *unit, StateRole role,
-                               double *const values[MOTIONS], StateList *list);
+void particles_state_rotations(const char *name, const char *unit, StateRole role, const Vector *vector,
+                               StateList *list);
 
 /** Largest extent of the present particles: low and high corner of their centres. */
 void particles_bounds(const Particles *particles, double low[3], double high[3]);

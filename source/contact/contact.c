@@ -260,7 +260,7 @@ void contact_bond_broke(Contact *c, int32_t a, int32_t b)
 {
   if (!c->spec) return;
   double way[3];
-  present_way(&c->body->particles, c->body->particles.displacement, a, b, way);
+  present_way(&c->body->particles, c->body->particles.displacement.row, a, b, way);
   const double rest = fmin(particles_distance(&c->body->particles, a, b), sqrt(dot(way, way)));
   for (int end = 0; end < 2; ++end) {
     ContactPair *pair = contact_pair_for(c, end ? b : a, end ? a : b);
@@ -366,7 +366,7 @@ void contact_join(const Contact *c, void (*one)(void *context, int32_t a, int32_
       if (!pair->low) continue;
       if (pair->kind == PAIR_BROKEN) most = pair->rest;
       if (pair->kind == PAIR_CUT) most = contact_cut_reach(c);
-      present_way(p, p->displacement, c->rows[r].place, pair->neighbour, way);
+      present_way(p, p->displacement.row, c->rows[r].place, pair->neighbour, way);
       if (sqrt(dot(way, way)) <= most * (1 + 1e-6)) one(context, c->rows[r].place, pair->neighbour);
     }
 }
@@ -377,7 +377,7 @@ void contact_search(Contact *c)
   double *now[3] = {0};
   for (int k = 0; k < 3; ++k) {
     if (!(now[k] = places_array(p->places, "contact", NULL))) c->failed = true;
-    for (int64_t i = 0; now[k] && i < p->places; ++i) now[k][i] = p->position[k][i] + p->displacement[k][i];
+    for (int64_t i = 0; now[k] && i < p->places; ++i) now[k][i] = p->position[k][i] + p->displacement.row[k][i];
   }
   for (int32_t r = 0; r < c->row_count; ++r)
     for (int32_t n = 0; n < c->rows[r].count; ++n) c->rows[r].pairs[n].found = c->rows[r].pairs[n].bond;

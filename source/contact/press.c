@@ -202,7 +202,7 @@ void contact_remember(Contact *c)
 {
   if (!c->spec) return;
   TEAM_FOR (r, c->row_count) {
-    look_around(c, c->body->particles.displacement, &c->rows[r]);
+    look_around(c, c->body->particles.displacement.row, &c->rows[r]);
     c->rows[r].before = c->rows[r].frame;
   }
   TEAM_SINGLE
@@ -386,7 +386,7 @@ void contact_spread_change(Contact *c, double *const change[3])
 static void look_and_choose(void *context)
 {
   Contact *c = context;
-  double *const *u = c->body->particles.displacement;
+  double *const *u = c->body->particles.displacement.row;
   TEAM_FOR (r, c->row_count) look_around(c, u, &c->rows[r]);
   TEAM_FOR (r, c->row_count) choose_row(c, u, &c->rows[r]);
 }
@@ -421,7 +421,7 @@ void contact_resist(Contact *c, double *const *u, double *const *internal)
 static void find_stored(void *context)
 {
   Contact *c = context;
-  double *const *u = c->body->particles.displacement;
+  double *const *u = c->body->particles.displacement.row;
   TEAM_FOR (r, c->row_count) look_around(c, u, &c->rows[r]);
   TEAM_FOR (r, c->row_count) press_row(c, u, &c->rows[r], true);
 }

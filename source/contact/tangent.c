@@ -32,7 +32,8 @@ static bool find_joint(const Contact *c, const ContactRow *row, int32_t n, Conta
   const ContactPair *pair = &row->pairs[n];
   const ContactRow *other = &c->rows[c->row_of[pair->neighbour]];
   Press m;
-  if (!row->near || !other->near || !contact_touch(c, c->body->particles.displacement, row, other, pair, touching, &m))
+  if (!row->near || !other->near ||
+      !contact_touch(c, c->body->particles.displacement.row, row, other, pair, touching, &m))
     return false;
   *joint = (ContactJoint){.low = row->place, .pair = n, .stiffness = m.stiffness, .across = m.across};
   memcpy(joint->normal, m.normal, sizeof joint->normal);

@@ -276,8 +276,8 @@ static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond
   const Particles *p = d->particles;
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double moved = moment->time_step * (p->velocity[k][bond->neighbour] - p->velocity[k][place]);
-    const double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place] - moved;
+    const double moved = moment->time_step * (p->velocity.row[k][bond->neighbour] - p->velocity.row[k][place]);
+    const double y = bond->xi[k] + p->displacement.row[k][bond->neighbour] - p->displacement.row[k][place] - moved;
     square += y * y;
   }
   const double natural = (1 + particles_free_strain(p, place, bond->neighbour)) * bond->length;
@@ -570,8 +570,8 @@ double domain_criterion_seconds(Domain *d, double enough)
       d->failure.criterion && d->failure.criterion->suspect ? memory_plain(3 * (size_t)p->places, sizeof *kept) : NULL;
   if (!kept) return 0;
   for (int k = 0; k < 3; ++k) {
-    memcpy(kept + (size_t)k * (size_t)p->places, p->displacement[k], bytes);
-    for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] = stretch * p->position[k][i];
+    memcpy(kept + (size_t)k * (size_t)p->places, p->displacement.row[k], bytes);
+    for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] = stretch * p->position[k][i];
   }
   CriterionPass pass = {.domain = d};
   double seconds = 0;
@@ -581,7 +581,7 @@ double domain_criterion_seconds(Domain *d, double enough)
     team_each(pass.slices, breaking_test_slice, &pass);
     seconds = clock_seconds() - begin;
   }
-  for (int k = 0; k < 3; ++k) memcpy(p->displacement[k], kept + (size_t)k * (size_t)p->places, bytes);
+  for (int k = 0; k < 3; ++k) memcpy(p->displacement.row[k], kept + (size_t)k * (size_t)p->places, bytes);
   free(kept);
   return pass.every_step ? seconds * (double)p->slices / (double)pass.slices : 0;
 }

@@ -368,7 +368,7 @@ size_t domain_particle_bytes(const Domain *d)
   if (d->strains.given) tensors += 6;
   for (int r = 0; r < d->region_count; ++r)
     for (int k = 0; k < 3; ++k) bonds += d->regions[r].beside[k] ? (size_t)d->regions[r].points.count : 0;
-  const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
+  const size_t own = 3 + 4 * (size_t)p->space.rows + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
   return places * sizeof(double) * (own + (d->family_volume ? 1 : 0) + tensors) + places * sizeof(int32_t) * 2 +
          (2 * history + bonds) * sizeof(double);
 }

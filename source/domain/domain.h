@@ -11,10 +11,6 @@
 
 #include <math.h>
 
-typedef struct Batch { /* slices first .. last - 1, of one region and material, at most BATCH places */
-  int64_t first, last;
-} Batch;
-
 /** Where threads keep what phases `ahead` write, of slices around the batch under way only (window.c). */
 typedef struct Window {
   int64_t slices;  /* that have room at a time, a power of two */
@@ -190,15 +186,15 @@ typedef struct Domain {
   int64_t breaking_count, breaking_capacity;
   Torn *torn;
   int64_t torn_count, torn_capacity;
-  uint8_t *is_torn;             /* [places] 1, or 2 where its family carries less from this step on */
-  int64_t broken_before;        /* bonds, at the beginning of the step under way */
-  bool any_suspect;             /* in the step under way */
-  bool out_of_memory;           /* while bonds broke */
-  double force_sum;             /* of all internal force components' magnitudes, as of the last domain_forces */
-  double *batch_sum;            /* [batches] */
-  int64_t *batch_failed;        /* [batches] */
-  int64_t failed_place;         /* whose law could not be integrated, or -1 */
-  double *const *linearised_at; /* rows of displacements of the last domain_linearise */
+  uint8_t *is_torn;            /* [places] 1, or 2 where its family carries less from this step on */
+  int64_t broken_before;       /* bonds, at the beginning of the step under way */
+  bool any_suspect;            /* in the step under way */
+  bool out_of_memory;          /* while bonds broke */
+  double force_sum;            /* of all internal force components' magnitudes, as of the last domain_forces */
+  double *batch_sum;           /* [batches * MAX_SUMS] */
+  int64_t *batch_failed;       /* [batches] */
+  int64_t failed_place;        /* whose law could not be integrated, or -1 */
+  const Vector *linearised_at; /* displacements of the last domain_linearise */
 } Domain;
 
 typedef struct DomainSpec {
@@ -236,12 +232,11 @@ bool region_has_material(const Domain *domain, const Region *region, const char 
 int domain_create(Domain *domain, const DeckReader *reader, const DomainSpec *spec);
 void domain_destroy(Domain *domain);
 
-/** State at which forces are evaluated, and where they are written: rows over places, as many as particles have motions
- *  (places_array). */
+/** State at which forces are evaluated, and where they are written. */
 typedef struct Evaluation {
-  double *const *displacement;  /* displacements; in a linearised step their changes, 0 in unused places */
-  double *const *linearised_at; /* displacements of the last domain_linearise; NULL: the evaluation is nonlinear */
-  double *const *internal;      /* written: forces and moments per volume; in a linearised step their changes */
+  const Vector *displacement;  /* displacements; in a linearised step their changes, 0 in unused places */
+  const Vector *linearised_at; /* displacements of the last domain_linearise; NULL: the evaluation is nonlinear */
+  const Vector *internal;      /* written: forces and moments per volume; in a linearised step their changes */
 } Evaluation;
 
 /** Returns the evaluation at the particles' displacements that writes their internal forces. */
@@ -262,8 +257,8 @@ int domain_evaluate(Domain *domain, const Evaluation *of);
 bool domain_has_forces(const Domain *domain);
 
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked.
- *  @param[in] displacement  rows of displacements; NULL: those held */
-void domain_show_states(Domain *domain, double *const *displacement);
+ *  @param[in] displacement  NULL: the displacements held */
+void domain_show_states(Domain *domain, const Vector *displacement);
 
 /** Lets linearised steps take secants where laws soften, or no longer: those who iterate come on by them where points soften and
  *  unload in turn, if slowly. @return whether the body has bonds of such laws */
@@ -273,20 +268,19 @@ bool domain_has_secants(const Domain *domain);
 
 /** Evaluates forces into the particles' own rows and keeps what linearised steps need of that: tangents of laws among
  *  it. The return value does not tell of forces that were not found (domain_has_forces).
- *  @param[in] displacement  rows of displacements, which stay as they are until the last linearised step; NULL: those
+ *  @param[in] displacement  displacements, which stay as they are until the last linearised step; NULL: those
  *                           held */
-int domain_linearise(Domain *domain, double *const *displacement, Error *error);
+int domain_linearise(Domain *domain, const Vector *displacement, Error *error);
 /** A linearised step: changes K v of internal forces with changes v of displacements (domain_forces). */
-void domain_linear_step(Domain *domain, double *const *v, double *const *change);
+void domain_linear_step(Domain *domain, const Vector *v, const Vector *change);
 
 /** Adds changes of the forces beside those of bonds to those of a linearised step, at the state at which forces_linearise was called.
- *  @param[in,out] change  arrays of places_array */
-void domain_change_forces(Domain *domain, double *const v[3], double *const change[3]);
+ *  @param[in,out] change  of forces per volume */
+void domain_change_forces(Domain *domain, const Vector *v, const Vector *change);
 
 /** Forces per volume beside those of bonds; trial state only.
- *  @param[in] displacement  rows of displacements; NULL: those held
- *  @param[out] forces       arrays of places_array */
-void domain_forces_beside(Domain *domain, double *const *displacement, double *const forces[3]);
+ *  @param[in] displacement  NULL: the displacements held */
+void domain_forces_beside(Domain *domain, const Vector *displacement, const Vector *forces);
 
 /** Rows of particles, points, bonds and forces. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
  *  deformations and force states follow to the same bits. */
@@ -401,7 +395,7 @@ void domain_book_strains(Domain *domain);
 double domain_strain_work(const Domain *domain);
 /** Adds to forces per volume what internal ones change by, with laws elastic and displacements as held, when strains of loads that begin with the stage under way
  *  have grown (loading_grown_factor). Strains are as before then, internal forces those of neither. By one thread; `time` of the run. */
-int domain_add_grown_strains(Domain *domain, double time, double *const *force, Error *error);
+int domain_add_grown_strains(Domain *domain, double time, const Vector *force, Error *error);
 /** The sum of the sizes of forces that strains of loads would exert on particles if these had not moved: by what strains have changed since the stage under way
  *  began, at that time of the run; NaN: by all of them. */
 int domain_forces_of_strains(Domain *domain, double begin, double time, double *sum, Error *error);

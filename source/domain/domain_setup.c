@@ -206,10 +206,13 @@ static int share_out(Domain *d, Error *error)
     d->regions[r].last_batch = d->batch_count;
     if (create_stripes(d, &d->regions[r], error)) return BRECCIA_FAILURE;
   }
-  d->batch_sum = memory_zeroed((size_t)d->batch_count, sizeof(double), "batch sums", error);
+  d->batch_sum = memory_zeroed((size_t)d->batch_count * MAX_SUMS, sizeof(double), "batch sums", error);
   d->batch_failed = memory_zeroed((size_t)d->batch_count, sizeof(int64_t), "batch sums", error);
   if (!d->batch_sum || !d->batch_failed) return BRECCIA_FAILURE;
   for (int64_t b = 0; b < d->batch_count; ++b) d->batch_failed[b] = -1;
+  d->particles->space.tiles = d->batches;
+  d->particles->space.tile_count = d->batch_count;
+  d->particles->space.sums = d->batch_sum;
   return find_lowest(d, error);
 }
 

@@ -117,9 +117,9 @@ void domain_state(Domain *d, StateList *list)
   particles_state(d->particles, list);
   domain_strains_state(d, list);
   state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
-                   d->particles->internal, d->particles->places);
-  particles_state_rotations(d->particles, "moment", "stress", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
-                            d->particles->internal, list);
+                   d->particles->internal.row, d->particles->places);
+  particles_state_rotations("moment", "stress", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS, &d->particles->internal,
+                            list);
   if ((d->region_count > 1 || !points_on_particles(&d->regions[0].points)) && d->strain[0]) show_strains(d, list);
   if (d->gave_up)
     state_add(list,

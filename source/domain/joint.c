@@ -68,11 +68,12 @@ void joint_resist(const Domain *d, const Evaluation *of)
       if (!(d->family.intact[bond->slot] >> place % SLICE & 1)) continue;
       const Region *region = domain_region(d, bond->neighbour);
       double state[3];
-      region->type->half_state(region->formulation, of->displacement, of->linearised_at, bond->neighbour / SLICE,
-                               bond->back, bond->neighbour % SLICE, state);
+      region->type->half_state(region->formulation, of->displacement->row,
+                               of->linearised_at ? of->linearised_at->row : NULL, bond->neighbour / SLICE, bond->back,
+                               bond->neighbour % SLICE, state);
       for (int k = 0; k < 3; ++k) force[k] += state[k] * p->volume[bond->neighbour];
     }
-    for (int k = 0; k < 3; ++k) of->internal[k][place] -= force[k];
+    for (int k = 0; k < 3; ++k) of->internal->row[k][place] -= force[k];
   }
 }
 
@@ -81,7 +82,7 @@ void domain_bond_force(const Domain *d, int64_t slice, int64_t slot, int lane, d
   const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(&d->family, slice, slot, lane).neighbour;
   const Region *own = domain_region(d, place), *their = domain_region(d, other);
   double back[3];
-  double *const *u = d->particles->displacement;
+  double *const *u = d->particles->displacement.row;
   own->type->half_state(own->formulation, u, NULL, slice, slot, lane, force);
   their->type->half_state(their->formulation, u, NULL, other / SLICE, family_slot(&d->family, other, place),
                           other % SLICE, back);

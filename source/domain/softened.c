@@ -53,7 +53,7 @@ static double softened_opening(const Particles *p, int64_t place, const Bond *bo
 {
   double length = 0;
   for (int k = 0; k < 3; ++k) {
-    const double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place];
+    const double y = bond->xi[k] + p->displacement.row[k][bond->neighbour] - p->displacement.row[k][place];
     length += y * y;
   }
   return sqrt(length) - bond->length;

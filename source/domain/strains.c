@@ -152,9 +152,9 @@ static double tension_at(const Domain *d, int64_t place)
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
     double state[3], along = 0, square = 0;
-    region->type->half_state(region->formulation, p->displacement, NULL, slice, slot, (int)(place % SLICE), state);
+    region->type->half_state(region->formulation, p->displacement.row, NULL, slice, slot, (int)(place % SLICE), state);
     for (int k = 0; k < 3; ++k) {
-      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      const double y = bond.xi[k] + p->displacement.row[k][bond.neighbour] - p->displacement.row[k][place];
       along += state[k] * y;
       square += y * y;
     }
@@ -231,9 +231,8 @@ double domain_strain_work(const Domain *d)
 /* ---- forces ---- */
 
 /** Forces elastically, at displacements and strains as they stand, by a factor. */
-static int add_elastic_forces(Domain *d, double factor, double *const *force, Error *error)
+static int add_elastic_forces(Domain *d, double factor, const Vector *force, Error *error)
 {
-  const Particles *p = d->particles;
   domain_evaluate(d, NULL);
   if (!isfinite(d->force_sum)) {
     const char *stuck = forces_stuck(&d->forces, NULL);
@@ -246,8 +245,7 @@ static int add_elastic_forces(Domain *d, double factor, double *const *force, Er
                      "quasi-static: the period by which loads should grow is not known, as forces are no numbers under "
                      "all of their strains at once; give a 'period'");
   }
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) force[k][i] += factor * p->internal[k][i];
+  vector_combine(1, force, factor, &d->particles->internal);
   return BRECCIA_OK;
 }
 
@@ -278,7 +276,7 @@ static bool copy_strains(const LoadStrains *from, const LoadStrains *to)
   return others;
 }
 
-int domain_add_grown_strains(Domain *d, double time, double *const *force, Error *error)
+int domain_add_grown_strains(Domain *d, double time, const Vector *force, Error *error)
 {
   Strains *s = &d->strains;
   const LoadStrains put = of_loads(d);

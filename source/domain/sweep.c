@@ -17,12 +17,12 @@ typedef struct Purpose {
 
 /** Not finite if any force of the batch is not. */
 BRECCIA_CLONES
-static double force_magnitude(double *const *internal, int motions, const Batch *batch)
+static double force_magnitude(const Vector *internal, const Batch *batch)
 {
   Lanes sum = {0};
-  for (int k = 0; k < motions; ++k)
+  for (int k = 0; k < internal->space->rows; ++k)
     for (int64_t place = batch->first * SLICE; place < batch->last * SLICE; place += LANES)
-      sum += lanes_absolute(lanes_load(internal[k] + place));
+      sum += lanes_absolute(lanes_load(internal->row[k] + place));
   return lanes_total(sum);
 }
 
@@ -71,9 +71,9 @@ static Sweep sweep_of(const Purpose *purpose, int64_t first, int64_t last)
 {
   return (Sweep){.first = first,
                  .last = last,
-                 .displacement = purpose->of->displacement,
-                 .linearised_at = purpose->of->linearised_at,
-                 .internal = purpose->of->internal};
+                 .displacement = purpose->of->displacement->row,
+                 .linearised_at = purpose->of->linearised_at ? purpose->of->linearised_at->row : NULL,
+                 .internal = purpose->of->internal->row};
 }
 
 /** Runs phases `from` .. `to` - 1. @return -1, or a place at which a phase has failed */
@@ -242,7 +242,7 @@ static void run_group(Domain *d, Region *region, Group *group, int64_t batch, co
 /** Sums the magnitudes of the force components of a batch. */
 static void sum_forces(Domain *d, const Purpose *purpose, int64_t b)
 {
-  d->batch_sum[b] = force_magnitude(purpose->of->internal, d->particles->motions, &d->batches[b]);
+  d->batch_sum[b] = force_magnitude(purpose->of->internal, &d->batches[b]);
 }
 
 /** Phases of a batch that have waited for lower batches. */
@@ -359,7 +359,7 @@ static void run_all(Domain *d, const Purpose *purpose)
 
 Evaluation domain_present(const Domain *d)
 {
-  return (Evaluation){.displacement = d->particles->displacement, .internal = d->particles->internal};
+  return (Evaluation){.displacement = &d->particles->displacement, .internal = &d->particles->internal};
 }
 
 void domain_forces(Domain *d, const Evaluation *of)
@@ -372,7 +372,7 @@ void domain_forces(Domain *d, const Evaluation *of)
     for (int64_t b = 0; b < d->batch_count && d->failed_place < 0; ++b) d->failed_place = d->batch_failed[b];
   }
   if (of->linearised_at) return;
-  forces_resist(&d->forces, of->displacement, of->internal);
+  forces_resist(&d->forces, of->displacement->row, of->internal->row);
   TEAM_SINGLE
   {
     d->force_sum = 0;
@@ -412,11 +412,12 @@ static void sweep_all(void *context)
   const Task *task = context;
   const Evaluation *of = task->purpose.of;
   run_all(task->domain, &task->purpose);
-  if (!(task->purpose.without & OF_FORCES)) forces_resist(&task->domain->forces, of->displacement, of->internal);
+  if (!(task->purpose.without & OF_FORCES))
+    forces_resist(&task->domain->forces, of->displacement->row, of->internal->row);
 }
 
 /** Sweeps at displacements, into the particles' own forces. @param[in] displacement  NULL: those held */
-static void sweep_at(Domain *d, double *const *displacement, Purpose purpose)
+static void sweep_at(Domain *d, const Vector *displacement, Purpose purpose)
 {
   Evaluation at = domain_present(d);
   if (displacement) at.displacement = displacement;
@@ -424,7 +425,7 @@ static void sweep_at(Domain *d, double *const *displacement, Purpose purpose)
   team_run(sweep_all, &(Task){d, purpose});
 }
 
-void domain_show_states(Domain *d, double *const *displacement)
+void domain_show_states(Domain *d, const Vector *displacement)
 {
   d->tensors_are_old |= d->leaves_tensors;
   sweep_at(d, displacement, (Purpose){.no_law = true, .without = OF_SUMS | OF_FORCES});
@@ -461,10 +462,10 @@ bool domain_take_secants(Domain *d, Secants of)
   return any;
 }
 
-int domain_linearise(Domain *d, double *const *displacement, Error *error)
+int domain_linearise(Domain *d, const Vector *displacement, Error *error)
 {
-  const Evaluation at = {.displacement = displacement ? displacement : d->particles->displacement,
-                         .internal = d->particles->internal};
+  const Evaluation at = {.displacement = displacement ? displacement : &d->particles->displacement,
+                         .internal = &d->particles->internal};
   d->linearised_at = at.displacement;
   domain_leave_tensors(d, false);
   for (int r = 0; r < d->region_count; ++r)
@@ -473,12 +474,12 @@ int domain_linearise(Domain *d, double *const *displacement, Error *error)
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     points_keep_tangents(&d->regions[r].points, false, error);
-    if (region->type->linearise(region->formulation, at.displacement, error)) return BRECCIA_FAILURE;
+    if (region->type->linearise(region->formulation, at.displacement->row, error)) return BRECCIA_FAILURE;
   }
   return BRECCIA_OK;
 }
 
-void domain_linear_step(Domain *d, double *const *v, double *const *change)
+void domain_linear_step(Domain *d, const Vector *v, const Vector *change)
 {
   domain_evaluate(d, &(Evaluation){.displacement = v, .linearised_at = d->linearised_at, .internal = change});
 }
@@ -486,16 +487,16 @@ void domain_linear_step(Domain *d, double *const *v, double *const *change)
 /** Displacements, or their changes, and the forces that follow from them. */
 typedef struct Rows {
   Domain *domain;
-  double *const *displacement, *const *internal;
+  const Vector *displacement, *internal;
 } Rows;
 
 static void change_forces(void *context)
 {
   const Rows *s = context;
-  forces_change(&s->domain->forces, s->displacement, s->internal);
+  forces_change(&s->domain->forces, s->displacement->row, s->internal->row);
 }
 
-void domain_change_forces(Domain *d, double *const v[3], double *const change[3])
+void domain_change_forces(Domain *d, const Vector *v, const Vector *change)
 {
   Rows rows = {d, v, change};
   if (d->forces.count) team_run(change_forces, &rows);
@@ -504,12 +505,12 @@ void domain_change_forces(Domain *d, double *const v[3], double *const change[3]
 static void resist(void *context)
 {
   const Rows *s = context;
-  forces_resist(&s->domain->forces, s->displacement, s->internal);
+  forces_resist(&s->domain->forces, s->displacement->row, s->internal->row);
 }
 
-void domain_forces_beside(Domain *d, double *const *displacement, double *const forces[3])
+void domain_forces_beside(Domain *d, const Vector *displacement, const Vector *forces)
 {
-  Rows rows = {d, displacement ? displacement : d->particles->displacement, forces};
-  for (int k = 0; k < 3; ++k) memset(forces[k], 0, sizeof(double) * (size_t)d->particles->places);
+  Rows rows = {d, displacement ? displacement : &d->particles->displacement, forces};
+  vector_clear(forces);
   team_run(resist, &rows);
 }

@@ -112,14 +112,14 @@ static double half_energy(const Failure *failure, const Family *f, int64_t slice
 {
   const FailureRegion *own = &failure->regions[failure->region[slice]];
   double state[3], change[3], y[3], square = 0, sum = 0;
-  own->type->half_state(own->formulation, f->particles->displacement, NULL, slice, slot, lane, state);
+  own->type->half_state(own->formulation, f->particles->displacement.row, NULL, slice, slot, lane, state);
   if (own->type->elongation) {
     own->type->elongation(own->formulation, slice, slot, lane, change);
   } else {
     const int64_t place = slice * SLICE + lane;
     double along = 0;
     for (int k = 0; k < 3; ++k) {
-      const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
+      const double *u = f->particles->displacement.row[k], eta = u[bond->neighbour] - u[place];
       y[k] = bond->xi[k] + eta;
       square += y[k] * y[k];
       along += eta * (bond->xi[k] + y[k]);

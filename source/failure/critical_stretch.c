@@ -91,7 +91,7 @@ LANES_INLINE Lanes reserve(const Failure *failure, const Family *f, int64_t slot
   const int32_t *index = f->neighbour + at;
   Lanes square = {0}, reference = {0};
   for (int k = 0; k < 3; ++k) {
-    const double *u = p->displacement[k], *x = p->position[k];
+    const double *u = p->displacement.row[k], *x = p->position[k];
     Lanes xi = lattice ? lanes_set(f->patterns[family_pattern(f, slice, slot)].xi[k])
                        : lanes_gather(x, index) - lanes_load(x + place);
     Lanes y = xi + (lattice ? lanes_load(u + base) : lanes_gather(u, index)) - lanes_load(u + place);
@@ -135,7 +135,7 @@ static double deformed_length(const Particles *p, int64_t place, const Bond *bon
 {
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place];
+    double y = bond->xi[k] + p->displacement.row[k][bond->neighbour] - p->displacement.row[k][place];
     square += y * y;
   }
   return sqrt(square);

@@ -29,7 +29,7 @@ bool failure_is_longer(const Family *f, int64_t place, const Bond *bond)
   const double natural = particles_free_strain(f->particles, place, bond->neighbour);
   double along = 0;
   for (int k = 0; k < 3; ++k) {
-    const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
+    const double *u = f->particles->displacement.row[k], eta = u[bond->neighbour] - u[place];
     along += eta * (2 * bond->xi[k] + eta);
   }
   return along > natural * (2 + natural) * bond->length * bond->length;
@@ -39,7 +39,7 @@ double failure_stretch(const Family *f, int64_t place, const Bond *bond)
 {
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double *u = f->particles->displacement[k], y = bond->xi[k] + u[bond->neighbour] - u[place];
+    const double *u = f->particles->displacement.row[k], y = bond->xi[k] + u[bond->neighbour] - u[place];
     square += y * y;
   }
   return sqrt(square) / bond->length - 1 - particles_free_strain(f->particles, place, bond->neighbour);

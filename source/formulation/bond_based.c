@@ -201,10 +201,10 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const int64_t place = slice * SLICE + lane;
   const Bond bond = family_bond(b->family, slice, slot, lane);
   double y[3], square = 0, along = 0;
-  const double pull = bond_pull(b, p->displacement, slice, slot, lane, &bond, y) * bond.weight * p->volume[place];
+  const double pull = bond_pull(b, p->displacement.row, slice, slot, lane, &bond, y) * bond.weight * p->volume[place];
   for (int k = 0; k < 3; ++k) {
     square += y[k] * y[k];
-    along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+    along += y[k] * time * (p->velocity.row[k][bond.neighbour] - p->velocity.row[k][place]);
   }
   const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
   const double elastic =
@@ -243,7 +243,7 @@ static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const BondBased *b = formulation;
   ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
-  shape_gradient(b->family, b->particles->displacement, (int32_t)place, shape.inverse, f);
+  shape_gradient(b->family, b->particles->displacement.row, (int32_t)place, shape.inverse, f);
   if (b->space == SPACE_PLANE_STRESS)
     f[8] = thickness_ratio(f, b->particles->free_strain ? b->particles->free_strain[place] : 0);
 }
@@ -260,7 +260,7 @@ void bond_stress(const void *formulation, int64_t place, double s[6])
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(f, slice, slot, lane);
-    double y[3], pull = bond_pull(b, b->particles->displacement, slice, slot, lane, &bond, y) *
+    double y[3], pull = bond_pull(b, b->particles->displacement.row, slice, slot, lane, &bond, y) *
                         bond_own_share(b, &bond) * bond.weight;
     for (int k = 0; k < 6; ++k) s[k] += pull * y[symmetric_row[k]] * y[symmetric_column[k]];
   }

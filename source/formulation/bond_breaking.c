@@ -12,7 +12,7 @@ LANES_INLINE Lanes room_of_lattice(const BondBased *b, const EnergyLimit *limit,
   const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
   Lanes square = {0};
   for (int k = 0; k < 3; ++k) {
-    const double *u = b->particles->displacement[k];
+    const double *u = b->particles->displacement.row[k];
     const Lanes y = lanes_set(row->xi[k]) + (lanes_load(u + there) - lanes_load(u + place));
     square += y * y;
   }
@@ -34,7 +34,7 @@ static double room_of_stored(const BondBased *b, const EnergyLimit *limit, int64
   const Bond bond = family_bond(f, slice, slot, lane);
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double *u = b->particles->displacement[k], y = bond.xi[k] + (u[bond.neighbour] - u[place]);
+    const double *u = b->particles->displacement.row[k], y = bond.xi[k] + (u[bond.neighbour] - u[place]);
     square += y * y;
   }
   const double own = bond_own_share(b, &bond) * bond_factor(b, slice, slot, lane) *

@@ -137,8 +137,8 @@ static void sum_bonds(const Correspondence *c, int64_t place, double time, Sums 
     const Bond bond = family_bond(c->family, slice, slot, lane);
     double eta[3], before[3];
     for (int k = 0; k < 3; ++k) {
-      eta[k] = p->displacement[k][bond.neighbour] - p->displacement[k][place];
-      before[k] = eta[k] - time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+      eta[k] = p->displacement.row[k][bond.neighbour] - p->displacement.row[k][place];
+      before[k] = eta[k] - time * (p->velocity.row[k][bond.neighbour] - p->velocity.row[k][place]);
     }
     for (int k = 0; k < 9; ++k) {
       sums->now[k] += bond.weight * eta[k / 3] * bond.xi[k % 3];
@@ -188,12 +188,12 @@ static void sum_axial_energy(const Correspondence *c, int64_t place, double time
     const Bond bond = family_bond(c->family, slice, slot, lane);
     const double volumes = p->volume[place] * p->volume[bond.neighbour];
     double pull[3], spring[6], square = 0, force = 0, along = 0;
-    correspondence_axial_spring(c, p->displacement, place, &bond, pull, spring);
+    correspondence_axial_spring(c, p->displacement.row, place, &bond, pull, spring);
     for (int k = 0; k < 3; ++k) {
-      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      const double y = bond.xi[k] + p->displacement.row[k][bond.neighbour] - p->displacement.row[k][place];
       square += y * y;
       force += pull[k] * y; /* times |y| */
-      along += pull[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+      along += pull[k] * time * (p->velocity.row[k][bond.neighbour] - p->velocity.row[k][place]);
     }
     const double natural = natural_length(c, place, &bond),
                  stored = square > 0 ? 0.5 * volumes * force / sqrt(square) * (sqrt(square) - natural) : 0;
@@ -238,9 +238,9 @@ double correspondence_free_tension(const void *formulation, int64_t place)
     if (!(c->family->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(c->family, slice, slot, (int)(place % SLICE));
     double pull[3], spring[6], along = 0, square = 0;
-    correspondence_axial_spring(c, p->displacement, place, &bond, pull, spring);
+    correspondence_axial_spring(c, p->displacement.row, place, &bond, pull, spring);
     for (int k = 0; k < 3; ++k) {
-      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      const double y = bond.xi[k] + p->displacement.row[k][bond.neighbour] - p->displacement.row[k][place];
       along += pull[k] * y;
       square += y * y;
     }

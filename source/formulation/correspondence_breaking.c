@@ -45,7 +45,7 @@ void correspondence_elongation(const void *formulation, int64_t slice, int64_t s
   const int64_t place = slice * SLICE + lane;
   const double *turn = c->turns + slice * (9 * SLICE) + lane;
   for (int k = 0; k < 3; ++k) {
-    change[k] = c->particles->displacement[k][bond.neighbour] - c->particles->displacement[k][place];
+    change[k] = c->particles->displacement.row[k][bond.neighbour] - c->particles->displacement.row[k][place];
     for (int j = 0; j < 3; ++j) change[k] -= turn[SLICE * (3 * k + j)] * bond.xi[j];
   }
   const double freely = particles_free_strain(c->particles, place, bond.neighbour);
@@ -73,7 +73,7 @@ LANES_INLINE Fours four_places(const Correspondence *c, int64_t place)
     if (c->control == CONTROL_SCALAR && k <= ZZ) fours.hold[k] = lanes_load(c->hold[0] + place);
     if (c->control == CONTROL_UNIFORM && k <= ZZ) fours.hold[k] = lanes_set(c->uniform);
   }
-  for (int k = 0; k < 3; ++k) fours.own[k] = lanes_load(c->particles->displacement[k] + place);
+  for (int k = 0; k < 3; ++k) fours.own[k] = lanes_load(c->particles->displacement.row[k] + place);
   return fours;
 }
 
@@ -97,7 +97,7 @@ BRECCIA_CLONES
 static bool any_beyond(const Correspondence *c, int64_t slice, const EnergyLimit *limit)
 {
   const Family *f = c->family;
-  double *const *u = c->particles->displacement;
+  double *const *u = c->particles->displacement.row;
   const double share = 2 * limit->half * (1 - 1e-9);
   LaneMask any = {0};
   for (int half = 0; half < SLICE / LANES; ++half) {
@@ -141,7 +141,7 @@ static bool any_axial_beyond(const Correspondence *c, int64_t slice, int lane, c
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
     double state[3], change[3], energy = 0;
-    correspondence_half_state(c, c->particles->displacement, NULL, slice, slot, lane, state);
+    correspondence_half_state(c, c->particles->displacement.row, NULL, slice, slot, lane, state);
     correspondence_elongation(c, slice, slot, lane, change);
     for (int k = 0; k < 3; ++k) energy += 0.5 * state[k] * change[k];
     const double influence = limit->of->value(fmin(1, bond.length / f->horizon), bond.length),

@@ -286,7 +286,7 @@ void correspondence_gradient_at(const Correspondence *c, double *const *displace
 void correspondence_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Correspondence *c = formulation;
-  correspondence_gradient_at(c, c->particles->displacement, place, f);
+  correspondence_gradient_at(c, c->particles->displacement.row, place, f);
 }
 
 bool correspondence_takes_small_strain(const void *formulation)

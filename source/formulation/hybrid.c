@@ -171,7 +171,7 @@ void hybrid_tensors(const Hybrid *h, int64_t row, const HybridView *view, double
   for (int n = 0; n < view->count && !view->idle; ++n)
     for (int k = 0; k < 9; ++k) {
       const int32_t place = view->member[n];
-      const double moved = u[k / 3][place] - time * h->particles->velocity[k / 3][place];
+      const double moved = u[k / 3][place] - time * h->particles->velocity.row[k / 3][place];
       g[k] += moved * view->g[n][k % 3];
     }
   hybrid_strain(h, g, strain);

@@ -172,7 +172,7 @@ void hybrid_face_force(const void *formulation, int64_t place, double force[3])
       const int member = hybrid_member_of(&view, (int32_t)place);
       if (view.idle || member == view.count || (own ? member >= 2 : member < 2 || view.member[0] != from)) continue;
       double p[9], part[3];
-      find_stress(h, rows.row, &view, h->particles->displacement, NULL, p);
+      find_stress(h, rows.row, &view, h->particles->displacement.row, NULL, p);
       member_force(h, &view, p, member, part);
       for (int k = 0; k < 3; ++k) force[k] -= (hybrid_share_inside(h, &view) - inside) * part[k];
     }
@@ -184,7 +184,7 @@ static void bond_gradient(const Hybrid *h, int64_t row, double f[9])
 {
   HybridView view;
   hybrid_view(h, row, &view);
-  hybrid_gradient(&view, h->particles->displacement, f);
+  hybrid_gradient(&view, h->particles->displacement.row, f);
   for (int k = 0; k < 3; ++k) f[4 * k] += 1;
 }
 
@@ -207,7 +207,7 @@ void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int
 {
   const Hybrid *h = formulation;
   const Bond bond = family_bond(h->family, slice, slot, lane);
-  double *const *u = h->particles->displacement, f[9], turn[9];
+  double *const *u = h->particles->displacement.row, f[9], turn[9];
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
   bond_gradient(h, rows[0], f);
@@ -229,7 +229,7 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   for (int n = 0; n < (rows[0] == rows[1] ? 1 : 2); ++n) {
     HybridView view;
     hybrid_view(h, rows[n], &view);
-    hybrid_tensors(h, rows[n], &view, h->particles->displacement, 0, strain, of);
+    hybrid_tensors(h, rows[n], &view, h->particles->displacement.row, 0, strain, of);
     for (int k = 0; k < 6; ++k) stress[k] += view.volume * of[k];
     for (int k = 0; k < 3; ++k) area[k] += view.area[k];
     volume += view.volume;
@@ -309,7 +309,7 @@ static void find_means(const Hybrid *h, int64_t place, double strain[6], double 
     HybridView view;
     if (!(volume > 0) || is_other_part(h, &at, place)) continue;
     if (h->hooke) hybrid_view_at(h, &at, &view);
-    hybrid_tensors(h, rows.row, &view, h->particles->displacement, 0, here, held);
+    hybrid_tensors(h, rows.row, &view, h->particles->displacement.row, 0, here, held);
     for (int k = 0; k < 6; ++k) {
       strain[k] += volume * here[k];
       stress[k] += volume * held[k];
@@ -327,7 +327,7 @@ void hybrid_place_gradient(const void *formulation, int64_t place, double f[9])
   const Hybrid *h = formulation;
   double strain[6], stress[6];
   const ShapeTensor shape = shape_tensor(h->family, (int32_t)place, h->dimensions, 0);
-  shape_gradient(h->family, h->particles->displacement, (int32_t)place, shape.inverse, f);
+  shape_gradient(h->family, h->particles->displacement.row, (int32_t)place, shape.inverse, f);
   if (!h->points->plane_stress) return;
   find_means(h, place, strain, stress);
   f[8] = h->finite ? sqrt(fmax(0, 1 + 2 * strain[ZZ])) : 1 + strain[ZZ];

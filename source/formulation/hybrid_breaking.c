@@ -13,7 +13,7 @@ static bool counts(const Hybrid *h, int k)
 static double density(const Hybrid *h, int64_t row, const HybridView *view, double time)
 {
   double strain[6], stress[6];
-  hybrid_tensors(h, row, view, h->particles->displacement, time, strain, stress);
+  hybrid_tensors(h, row, view, h->particles->displacement.row, time, strain, stress);
   return points_energy_at(points_material(h->points, row), stress) * points_softness(h->points, row);
 }
 
@@ -67,9 +67,9 @@ static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, do
 {
   PointInStep point;
   double g[9];
-  hybrid_tensors(h, row, view, h->particles->displacement, time, point.was, point.stress);
+  hybrid_tensors(h, row, view, h->particles->displacement.row, time, point.was, point.stress);
   take_growth_off(h, view, point.was);
-  hybrid_gradient(view, h->particles->displacement, g);
+  hybrid_gradient(view, h->particles->displacement.row, g);
   hybrid_strain(h, g, point.now);
   hybrid_laminate_strain(h, view->laminate, hybrid_laminate_free(h, view->member), point.now);
   return point;
@@ -89,11 +89,11 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
   if (!(hybrid_view_anew(h, at, &left) > FORMULATION_LEAST_EVENNESS))
     return view.volume * (density(h, row, &view, time) + work(h, point.stress, point.was, point.now) / 2);
   double after[9], before[9] = {0}, strain[6], first[6], stress[6];
-  hybrid_gradient(&left, p->displacement, after);
+  hybrid_gradient(&left, p->displacement.row, after);
   for (int n = 0; n < left.count; ++n)
     for (int k = 0; k < 9; ++k)
-      before[k] +=
-          (p->displacement[k / 3][left.member[n]] - time * p->velocity[k / 3][left.member[n]]) * left.g[n][k % 3];
+      before[k] += (p->displacement.row[k / 3][left.member[n]] - time * p->velocity.row[k / 3][left.member[n]]) *
+                   left.g[n][k % 3];
   hybrid_strain(h, after, strain);
   hybrid_strain(h, before, first);
   hybrid_laminate_strain(h, left.laminate, hybrid_laminate_free(h, view.member), strain);
@@ -175,7 +175,7 @@ double hybrid_free_tension(const void *formulation, int64_t place)
     HybridView view;
     if (!(volume > 0)) continue;
     if (h->hooke) hybrid_view_at(h, &at, &view);
-    hybrid_tensors(h, rows.row, &view, h->particles->displacement, 0, strain, stress);
+    hybrid_tensors(h, rows.row, &view, h->particles->displacement.row, 0, strain, stress);
     sum += (rows.alone ? 1 : 0.5) * volume * (stress[XX] + stress[YY] + (counts(h, ZZ) ? stress[ZZ] : 0));
   }
   return sum;

@@ -222,13 +222,13 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const Micropolar *m = formulation;
   const Particles *p = m->particles;
   const int64_t place = slice * SLICE + lane;
-  const Link l = micropolar_link(m, p->displacement, slice, slot, lane);
+  const Link l = micropolar_link(m, p->displacement.row, slice, slot, lane);
   const double weight = l.bond.weight * p->volume[place];
   double power = 0; /* that the link takes */
-  for (int k = 0; k < 3; ++k) power += l.force[k] * (p->velocity[k][l.bond.neighbour] - p->velocity[k][place]);
-  for (int k = ROTATION; k < p->motions; ++k) {
-    const int axis = p->motions == 4 ? 2 : k - ROTATION;
-    power -= l.moment[0][axis] * p->velocity[k][place] + l.moment[1][axis] * p->velocity[k][l.bond.neighbour];
+  for (int k = 0; k < 3; ++k) power += l.force[k] * (p->velocity.row[k][l.bond.neighbour] - p->velocity.row[k][place]);
+  for (int k = p->space.rotation; k < p->space.rows; ++k) {
+    const int axis = p->space.row[k].axis;
+    power -= l.moment[0][axis] * p->velocity.row[k][place] + l.moment[1][axis] * p->velocity.row[k][l.bond.neighbour];
   }
   *energy = (StoredEnergy){.stored = weight * l.energy, .received = weight * (l.energy - 0.5 * time * power)};
 }
@@ -260,7 +260,7 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
 static void show_held(const void *formulation, int64_t slice)
 {
   const Micropolar *m = formulation;
-  m->sweeps->show(m, m->particles->displacement, slice, slice + 1);
+  m->sweeps->show(m, m->particles->displacement.row, slice, slice + 1);
 }
 
 static void stored_energies(const void *formulation, int64_t slice, double energies[SLICE])
@@ -298,7 +298,7 @@ static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const Micropolar *m = formulation;
   const ShapeTensor shape = shape_tensor(m->family, (int32_t)place, m->body->dimensions, 0);
-  shape_gradient(m->family, m->particles->displacement, (int32_t)place, shape.inverse, f);
+  shape_gradient(m->family, m->particles->displacement.row, (int32_t)place, shape.inverse, f);
   if (m->space != SPACE_PLANE_STRESS) return;
   const double nu = poisson_of(m, place),
                sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
@@ -316,7 +316,7 @@ static void stress(const void *formulation, int64_t place, double s[6])
   for (int k = 0; k < 6; ++k) s[k] = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
-    const Link l = micropolar_link(m, m->particles->displacement, slice, slot, lane);
+    const Link l = micropolar_link(m, m->particles->displacement.row, slice, slot, lane);
     for (int k = 0; k < 6; ++k)
       s[k] +=
           l.bond.weight / 4 *

@@ -152,6 +152,12 @@ typedef struct LinkMotion {
   double apart[3], spin[2][3];
 } LinkMotion;
 
+/** Returns the first row of rotations. */
+static inline int micropolar_rotation(const Micropolar *m)
+{
+  return m->particles->space.rotation;
+}
+
 /** Returns the motion of a link's ends with changes v of displacements and rotations `at`. */
 LinkMotion micropolar_motion(const Micropolar *m, double *const *v, double *const *at, int64_t place, int64_t other);
 

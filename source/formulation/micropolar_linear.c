@@ -5,11 +5,11 @@
 #include <string.h>
 
 /** Spin of a place with a change of its rotation vector: with the vector f held it is (1 + (1 - cos f) / f^2 f x + (f - sin f) / f^3 f x f x). */
-static void find_spin(double *const *at, int64_t place, const double change[3], double spin[3])
+static void find_spin(const Micropolar *m, double *const *at, int64_t place, const double change[3], double spin[3])
 {
   double held[3], once[3], twice[3];
   for (int k = 0; k < 3; ++k) {
-    held[k] = at[ROTATION + k][place];
+    held[k] = at[micropolar_rotation(m) + k][place];
     spin[k] = change[k];
   }
   const double square = vector_dot(held, held), angle = sqrt(square);
@@ -26,10 +26,11 @@ LinkMotion micropolar_motion(const Micropolar *m, double *const *v, double *cons
   for (int k = 0; k < 3; ++k) motion.apart[k] = v[k][other] - v[k][place];
   for (int end = 0; end < 2; ++end) {
     const int64_t i = end ? other : place;
-    if (m->particles->motions == 4)
-      motion.spin[end][2] = v[ROTATION][i];
+    double *const *rotation = v + micropolar_rotation(m);
+    if (m->particles->space.rows == 4)
+      motion.spin[end][2] = rotation[0][i];
     else
-      find_spin(at, i, (const double[]){v[ROTATION][i], v[ROTATION + 1][i], v[ROTATION + 2][i]}, motion.spin[end]);
+      find_spin(m, at, i, (const double[]){rotation[0][i], rotation[1][i], rotation[2][i]}, motion.spin[end]);
   }
   return motion;
 }
@@ -107,15 +108,17 @@ static void add_twist(const LinkEnd ends[2], const double chord[3], const double
 }
 
 /** Of links of the thesis, which are there to compare with: differences. */
-static LinkChange difference(const Link *l, double *const *at, int64_t place, const LinkMotion *motion)
+static LinkChange difference(const Micropolar *m, const Link *l, double *const *at, int64_t place,
+                             const LinkMotion *motion)
 {
   const double size = sqrt(vector_dot(motion->apart, motion->apart)) / l->bond.length + fabs(motion->spin[0][2]) +
                       fabs(motion->spin[1][2]);
   LinkChange change = {.force = {0}};
   for (int side = -1; side <= 1 && size > 0; side += 2) {
     Link moved = *l;
-    const double share = side * 1e-6 / size, angle[2] = {at[ROTATION][place] + share * motion->spin[0][2],
-                                                         at[ROTATION][l->bond.neighbour] + share * motion->spin[1][2]};
+    const double *rotation = at[micropolar_rotation(m)], share = side * 1e-6 / size,
+                 angle[2] = {rotation[place] + share * motion->spin[0][2],
+                             rotation[l->bond.neighbour] + share * motion->spin[1][2]};
     for (int k = 0; k < 3; ++k) moved.y[k] += share * motion->apart[k];
     micropolar_resist_secant(angle, &moved);
     for (int k = 0; k < 3; ++k) {
@@ -129,7 +132,7 @@ static LinkChange difference(const Link *l, double *const *at, int64_t place, co
 LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t place, const Link *l,
                              const LinkMotion *motion)
 {
-  if (m->secant) return difference(l, at, place, motion);
+  if (m->secant) return difference(m, l, at, place, motion);
   const double length = l->bond.length, bending = l->stiffness.bending / length;
   double n[3], chord[3], chord_change[3], by_chord[2][3] = {{0}}, by_spin[2][3] = {{0}};
   for (int k = 0; k < 3; ++k) {
@@ -173,7 +176,7 @@ void micropolar_resist_changes_one_by_one(const Micropolar *m, const Sweep *swee
   double *const *at = sweep->linearised_at;
   const Particles *p = m->particles;
   const Family *f = m->family;
-  for (int k = 0; k < p->motions && !only_foreign; ++k)
+  for (int k = 0; k < p->space.rows && !only_foreign; ++k)
     memset(sweep->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
   for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
@@ -184,8 +187,8 @@ void micropolar_resist_changes_one_by_one(const Micropolar *m, const Sweep *swee
       const LinkMotion motion = micropolar_motion(m, sweep->displacement, at, place, l.bond.neighbour);
       const LinkChange change = micropolar_change(m, at, place, &l, &motion);
       for (int k = 0; k < 3; ++k) sweep->internal[k][place] += l.bond.weight * change.force[k];
-      for (int k = ROTATION; k < p->motions; ++k)
-        sweep->internal[k][place] += l.bond.weight * change.moment[0][p->motions == 4 ? 2 : k - ROTATION];
+      for (int k = p->space.rotation; k < p->space.rows; ++k)
+        sweep->internal[k][place] += l.bond.weight * change.moment[0][p->space.row[k].axis];
     }
 }
 
@@ -197,11 +200,11 @@ int64_t micropolar_point_count(const void *formulation)
   return m->family->slots * SLICE;
 }
 
-/** Row of motion k of an end, of `motions`: force on it along an axis, or moment about one. */
-static double row_of(const double force[3], const double moment[2][3], int end, int k, int motions)
+/** Row of motion of an end: force on it along an axis, or moment about one. */
+static double row_of(const double force[3], const double moment[2][3], int end, const VectorRow *row)
 {
-  if (k < ROTATION) return end ? -force[k] : force[k];
-  return moment[end][motions == 4 ? 2 : k - ROTATION];
+  if (row->kind == ROW_ROTATION) return moment[end][row->axis];
+  return end ? -force[row->axis] : force[row->axis];
 }
 
 /** Numbered by slot and lane; a link has one point, of its end with the lower place, or of its only end here. */
@@ -210,7 +213,7 @@ int micropolar_point(const void *formulation, double *const *u, int64_t number, 
   const Micropolar *m = formulation;
   const Particles *p = m->particles;
   const int64_t slot = number / SLICE, slice = family_slice(m->family, slot);
-  const int lane = (int)(number % SLICE), motions = p->motions;
+  const int lane = (int)(number % SLICE), motions = p->space.rows;
   const int64_t place = slice * SLICE + lane;
   operator_clear(point);
   if (!(m->family->intact[slot] >> lane & 1) || is_foreign(m->foreign, place)) return BRECCIA_OK;
@@ -220,21 +223,22 @@ int micropolar_point(const void *formulation, double *const *u, int64_t number, 
   if (!operator_add(point, place, error) || !operator_add(point, l.bond.neighbour, error)) return BRECCIA_FAILURE;
   point->motions = motions;
   for (int row = 0; row < 2 * motions; ++row)
-    point->force[row] = weight * row_of(l.force, l.moment, row / motions, row % motions, motions);
+    point->force[row] = weight * row_of(l.force, l.moment, row / motions, &p->space.row[row % motions]);
   for (int column = 0; column < 2 * motions; ++column) {
     const int end = column / motions, k = column % motions;
     LinkMotion motion = {.apart = {0}};
-    if (k < ROTATION)
-      motion.apart[k] = end ? 1 : -1;
+    const VectorRow *of = &p->space.row[k];
+    if (of->kind == ROW_DISPLACEMENT)
+      motion.apart[of->axis] = end ? 1 : -1;
     else if (motions == 4)
       motion.spin[end][2] = 1;
     else
-      find_spin(u, end ? l.bond.neighbour : place,
-                (const double[]){k == ROTATION, k == ROTATION + 1, k == ROTATION + 2}, motion.spin[end]);
+      find_spin(m, u, end ? l.bond.neighbour : place, (const double[]){of->axis == 0, of->axis == 1, of->axis == 2},
+                motion.spin[end]);
     const LinkChange change = micropolar_change(m, u, place, &l, &motion);
     for (int row = 0; row < 2 * motions; ++row)
       point->stiffness[2 * motions * row + column] =
-          weight * row_of(change.force, change.moment, row / motions, row % motions, motions);
+          weight * row_of(change.force, change.moment, row / motions, &p->space.row[row % motions]);
   }
   return BRECCIA_OK;
 }

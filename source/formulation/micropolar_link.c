@@ -14,11 +14,11 @@
 static void quaternion_of(const Micropolar *m, double *const *u, int64_t place, double q[4])
 {
   const Particles *p = m->particles;
-  if (p->motions == 6) {
+  if (p->space.rows == 6) {
     particles_orientation(p, u, place, q);
     return;
   }
-  const double half = u[ROTATION][place] / 2;
+  const double half = u[micropolar_rotation(m)][place] / 2;
   memcpy(q, (double[]){cos(half), 0, 0, sin(half)}, 4 * sizeof *q);
 }
 
@@ -164,7 +164,8 @@ Link micropolar_link(const Micropolar *m, double *const *u, int64_t slice, int64
     micropolar_weaken(m, place, l.bond.neighbour, slot * SLICE + lane, l.stretch, &l.stiffness);
   for (int k = 0; k < 3; ++k) chord[k] = l.y[k] / l.length;
   if (m->secant)
-    micropolar_resist_secant((const double[]){u[ROTATION][place], u[ROTATION][l.bond.neighbour]}, &l);
+    micropolar_resist_secant(
+        (const double[]){u[micropolar_rotation(m)][place], u[micropolar_rotation(m)][l.bond.neighbour]}, &l);
   else
     resist(m, u, place, chord, &l);
   return l;
@@ -174,7 +175,7 @@ void micropolar_resist_one_by_one(const Micropolar *m, const Sweep *sweep, int64
 {
   const Particles *p = m->particles;
   const Family *f = m->family;
-  for (int k = 0; k < p->motions && !only_foreign; ++k)
+  for (int k = 0; k < p->space.rows && !only_foreign; ++k)
     memset(sweep->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
   for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
@@ -183,7 +184,7 @@ void micropolar_resist_one_by_one(const Micropolar *m, const Sweep *sweep, int64
       const Link l = micropolar_link(m, sweep->displacement, slice, slot, lane);
       const int64_t place = slice * SLICE + lane;
       for (int k = 0; k < 3; ++k) sweep->internal[k][place] += l.bond.weight * l.force[k];
-      for (int k = ROTATION; k < p->motions; ++k)
-        sweep->internal[k][place] += l.bond.weight * l.moment[0][p->motions == 4 ? 2 : k - ROTATION];
+      for (int k = p->space.rotation; k < p->space.rows; ++k)
+        sweep->internal[k][place] += l.bond.weight * l.moment[0][p->space.row[k].axis];
     }
 }

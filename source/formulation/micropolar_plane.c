@@ -74,7 +74,7 @@ static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
     lanes_store(sweep->internal[0] + place, own.force[0]);
     lanes_store(sweep->internal[1] + place, own.force[1]);
     lanes_store(sweep->internal[2] + place, lanes_set(0));
-    lanes_store(sweep->internal[ROTATION] + place, own.moment);
+    lanes_store(sweep->internal[micropolar_rotation(m)] + place, own.moment);
   }
 }
 
@@ -87,11 +87,11 @@ static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    const Lanes u[2] = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
+    const Lanes u[2] = {lanes_load(p->displacement.row[0] + place), lanes_load(p->displacement.row[1] + place)},
                 cosine = lanes_load(m->shown[0] + place), sine = lanes_load(m->shown[1] + place);
     Lanes sum = lanes_set(0); /* per volume of this end, times the weights of the bonds */
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = links_of(m, p->displacement, slice, slot, half, own_bits(m, slice, slot), 2, u);
+      const LinkLanes l = links_of(m, p->displacement.row, slice, slot, half, own_bits(m, slice, slot), 2, u);
       const ChordLanes chord = chords_of(m, &l, 2);
       StiffnessLanes stiffness = stiffness_of_links(m, &l);
       weaken(m, weak, &l, chord.stretch, &stiffness);
@@ -124,7 +124,7 @@ LANES_INLINE void add_change(const Micropolar *m, double *const *v, const LinkLa
   const Lanes dx = lanes_intact(l->intact, l->half, of_others(l, v[0]) - own->v[0]),
               dy = lanes_intact(l->intact, l->half, of_others(l, v[1]) - own->v[1]);
   const Lanes along = mx * dx + my * dy, turn = (mx * dy - my * dx) * over_length;
-  const Lanes a = own->spin - turn, b = of_others(l, v[ROTATION]) - turn;
+  const Lanes a = own->spin - turn, b = of_others(l, v[micropolar_rotation(m)]) - turn;
   const Lanes six = lanes_set(6) * stiffness.bending * over_length, shear = six * (angles.here + angles.other),
               shear_change = six * (a + b) - shear * along * over_length;
   const Lanes pull = stiffness.axial * chord.stretch, pull_change = stiffness.axial * along * l->by_length;
@@ -143,7 +143,7 @@ static void resist_changes(const Micropolar *m, const Sweep *sweep, int64_t slic
     const int64_t place = slice * SLICE + LANES * half;
     HalfChange own = {.cosine = lanes_load(m->shown[0] + place),
                       .sine = lanes_load(m->shown[1] + place),
-                      .spin = lanes_load(v[ROTATION] + place),
+                      .spin = lanes_load(v[micropolar_rotation(m)] + place),
                       .moment = {0}};
     for (int k = 0; k < 2; ++k) {
       own.u[k] = lanes_load(at[k] + place);
@@ -157,13 +157,13 @@ static void resist_changes(const Micropolar *m, const Sweep *sweep, int64_t slic
     lanes_store(sweep->internal[0] + place, own.force[0]);
     lanes_store(sweep->internal[1] + place, own.force[1]);
     lanes_store(sweep->internal[2] + place, lanes_set(0));
-    lanes_store(sweep->internal[ROTATION] + place, own.moment);
+    lanes_store(sweep->internal[micropolar_rotation(m)] + place, own.moment);
   }
 }
 
 static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)
 {
-  const double *angle = at[ROTATION];
+  const double *angle = at[micropolar_rotation(m)];
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
     Lanes sine, cosine;
     lanes_sine_cosine(lanes_load(angle + place), &sine, &cosine);

@@ -159,7 +159,7 @@ static void resist(const Micropolar *m, const Sweep *sweep, int64_t slice)
     }
     for (int k = 0; k < 3; ++k) {
       lanes_store(sweep->internal[k] + place, own.force[k]);
-      lanes_store(sweep->internal[ROTATION + k] + place, own.moment[k]);
+      lanes_store(sweep->internal[micropolar_rotation(m) + k] + place, own.moment[k]);
     }
   }
 }
@@ -202,10 +202,10 @@ static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     Lanes u[3], q[4], sum = lanes_set(0);
-    for (int k = 0; k < 3; ++k) u[k] = lanes_load(p->displacement[k] + place);
+    for (int k = 0; k < 3; ++k) u[k] = lanes_load(p->displacement.row[k] + place);
     for (int k = 0; k < 4; ++k) q[k] = lanes_load(m->shown[k] + place);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = links_of(m, p->displacement, slice, slot, half, own_bits(m, slice, slot), 3, u);
+      const LinkLanes l = links_of(m, p->displacement.row, slice, slot, half, own_bits(m, slice, slot), 3, u);
       sum += energy_of(m, &l, stiffness_of_links(m, &l), weak, q);
     }
     lanes_store(energies + LANES * half,
@@ -383,7 +383,7 @@ static void resist_changes(const Micropolar *m, const Sweep *sweep, int64_t slic
     }
     for (int k = 0; k < 3; ++k) {
       lanes_store(sweep->internal[k] + place, own.force[k]);
-      lanes_store(sweep->internal[ROTATION + k] + place, own.moment[k]);
+      lanes_store(sweep->internal[micropolar_rotation(m) + k] + place, own.moment[k]);
     }
   }
 }
@@ -395,8 +395,8 @@ static void show_spins(const Micropolar *m, const Sweep *sweep)
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES) {
     Lanes held[3], spin[3], once[3], twice[3], sine, cosine;
     for (int k = 0; k < 3; ++k) {
-      held[k] = lanes_load(at[ROTATION + k] + place);
-      spin[k] = lanes_load(v[ROTATION + k] + place);
+      held[k] = lanes_load(at[micropolar_rotation(m) + k] + place);
+      spin[k] = lanes_load(v[micropolar_rotation(m) + k] + place);
     }
     const Lanes square = dot_lanes(held, held), angle = lanes_root(square), one = lanes_set(1);
     const LaneMask small = (LaneMask)(angle < lanes_set(1e-3));
@@ -415,7 +415,7 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
 {
   Lanes q[4];
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
-    turned_by(m->particles->orientation, at, place, q);
+    turned_by(m->particles->orientation, at + micropolar_rotation(m), place, q);
     for (int k = 0; k < 4; ++k) lanes_store(m->shown[k] + place, q[k]);
   }
   for (int64_t place = first * SLICE; place < last * SLICE && m->record; ++place) show_record(m, at, place);

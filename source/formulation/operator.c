@@ -13,7 +13,7 @@ void operator_clear(Operator *point)
   memset(point, 0, offsetof(Operator, force)); /* what is of links only is filled whole */
   point->places = places;
   point->capacity = capacity;
-  point->motions = ROTATION;
+  point->motions = 3;
 }
 
 void operator_destroy(Operator *point)
@@ -111,7 +111,7 @@ static void shaped(const Operator *point, int l, double kg[3])
 
 static bool is_link(const Operator *point)
 {
-  return point->motions > ROTATION;
+  return point->motions > 3;
 }
 
 /** Change of the forces of one end of a link with motions of an end. */

@@ -34,7 +34,7 @@ typedef struct Operator {
   double hold[6], shape[6];      /* C and K of the control; C = 0: none */
   int motions;                   /* rows of motion of its places: 3, or all of a link with rotations */
   /** Of a link, first of the one place, then of the other: forces and moments, and how they change with displacements and rotations. */
-  double force[2 * MOTIONS], stiffness[4 * MOTIONS * MOTIONS];
+  double force[2 * MAX_ROWS], stiffness[4 * MAX_ROWS * MAX_ROWS];
 } Operator;
 
 /** Empties an operator for another point; its memory is kept. */

@@ -80,12 +80,12 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(p->displacement, place, &bond);
+    const OrdinaryStretch s = ordinary_stretch(p->displacement.row, place, &bond);
     const double own = ordinary_factor(o, place, slot * SLICE + lane, ORDINARY_OWN),
                  spring = ordinary_factor(o, place, slot * SLICE + lane, ORDINARY_SPRING);
     double grown = 0;
     for (int k = 0; k < 3; ++k)
-      grown += time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]) * s.y[k] / s.length;
+      grown += time * (p->velocity.row[k][bond.neighbour] - p->velocity.row[k][place]) * s.y[k] / s.length;
     const double from_free = s.elongation - ordinary_free(o, place) * bond.length;
     volume += own * bond.weight * bond.length * from_free;
     const double shift = shift_of(o, slot, lane, 1), elastic = from_free - shift;
@@ -116,7 +116,7 @@ void ordinary_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Ordinary *o = formulation;
   const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, o->dimensions, 0);
-  shape_gradient(o->family, o->particles->displacement, (int32_t)place, shape.inverse, f);
+  shape_gradient(o->family, o->particles->displacement.row, (int32_t)place, shape.inverse, f);
   if (o->space != SPACE_PLANE_STRESS) return;
   const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2, /* 2 (E_xx + E_yy) */
       inelastic = o->flow ? 2 * o->flow->across[1][place] : 0, freely = ordinary_free(o, place);

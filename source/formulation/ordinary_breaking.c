@@ -23,7 +23,7 @@ LANES_INLINE Four four_bonds(const Ordinary *o, const EnergyLimit *limit, int64_
     const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
     Lanes square = {0}, along = {0};
     for (int k = 0; k < 3; ++k) {
-      const double *u = o->particles->displacement[k];
+      const double *u = o->particles->displacement.row[k];
       const Lanes xi = lanes_set(row->xi[k]), eta = lanes_load(u + there) - lanes_load(u + place), y = xi + eta;
       square += y * y;
       along += eta * (xi + y);
@@ -36,7 +36,7 @@ LANES_INLINE Four four_bonds(const Ordinary *o, const EnergyLimit *limit, int64_
   } else {
     for (int lane = 0; lane < LANES; ++lane) {
       const Bond bond = family_bond(f, slice, slot, LANES * half + lane);
-      const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place + lane, &bond);
+      const OrdinaryStretch s = ordinary_stretch(o->particles->displacement.row, place + lane, &bond);
       four.length[lane] = bond.length;
       four.elongation[lane] = s.elongation;
       four.most[lane] = 2 * limit->half / limit->of->value(fmin(1, bond.length / f->horizon), bond.length);

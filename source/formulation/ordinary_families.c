@@ -449,7 +449,7 @@ int ordinary_balance_families(Ordinary *o, Error *error)
   FamilyBalance b = {.o = o};
   /* With images beside a formulation that turns its particles the stiffness was found to be unsymmetric, for a cause
    * that is not known. */
-  if (o->foreign && o->body->margin_of && o->particles->motions > ROTATION) return BRECCIA_OK;
+  if (o->foreign && o->body->margin_of && particles_have_rotations(o->particles)) return BRECCIA_OK;
   families_list_terms(&b);
   b.wish = memory_zeroed((size_t)places, sizeof *b.wish, "bond constants", error);
   b.of_patterns = memory_zeroed((size_t)f->pattern_count * TERM_ROOM + 1, sizeof(double), "bond constants", error);

@@ -71,7 +71,7 @@ static StressSums stress_sums(const Ordinary *o, int64_t place)
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
-    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement.row, place, &bond);
     const StressBond of = stress_bond(o, place, slot * SLICE + lane, &bond, &s);
     const double shift = o->flow ? o->flow->shift[1][slot * SLICE + lane] : 0,
                  elastic = (s.elongation - freely * bond.length - shift) / bond.length;
@@ -142,7 +142,7 @@ static double stress_correct(const Ordinary *o, int64_t place, const StressSums 
   }
   stress_make_isotropic(d, matrix, begin, wanted, wanted);
   const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, d, 0);
-  shape_gradient(o->family, o->particles->displacement, (int32_t)place, shape.inverse, f);
+  shape_gradient(o->family, o->particles->displacement.row, (int32_t)place, shape.inverse, f);
   for (int k = 0; k < 6; ++k)
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) {

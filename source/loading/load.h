@@ -114,7 +114,7 @@ typedef struct OneSided {
  *  another particle. */
 typedef struct Constraint {
   Load *load;
-  int row;             /* of motion from which its direction counts: 0 of displacements, ROTATION of rotations */
+  int row; /* of motion from which its direction counts: 0 of displacements, that of the first rotation of rotations */
   double direction[3]; /* unit vector; of rotations in the plane the first is about z */
   double value;
   int order;             /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */

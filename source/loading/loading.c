@@ -81,7 +81,7 @@ int loading_create(const LoadMaking *making, const SectionList *loads, const Loa
   size_t most = (size_t)loads->count;
   for (int s = 0; s < stage_count; ++s) most += (size_t)stages[s].loads->count;
   loading->loads = memory_zeroed(most, sizeof(Load), "loads", reader->error);
-  loading->constraints = memory_zeroed(MOTIONS * most, sizeof(Constraint), "loads", reader->error);
+  loading->constraints = memory_zeroed(MAX_ROWS * most, sizeof(Constraint), "loads", reader->error);
   if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
   int status = add_loads(making, loads, 0);
   for (int s = 0; s < stage_count; ++s) {
@@ -167,8 +167,8 @@ static void make_zero(double *value)
 /** External forces as they stand when a stage begins: of loads that act already. Others come suddenly, or grow over the first increment. */
 static void take_up_forces(const Loading *loading, Particles *p, double time)
 {
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) make_zero(&p->external[k][i]);
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t i = 0; i < p->places; ++i) make_zero(&p->external.row[k][i]);
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     const bool stays = load->first < loading->stage || load->type->goes_on;
@@ -201,11 +201,11 @@ void loading_begin(Loading *loading, Particles *p, double time)
     for (int64_t n = 0; n < selection->count; ++n) {
       constraint->from[n] = 0;
       for (int k = 0; k < 3; ++k) {
-        const double *u = p->displacement[constraint->row + k];
+        const double *u = p->displacement.row[constraint->row + k];
         if (constraint->direction[k] == 0) continue;
         constraint->from[n] += u[selection->places[n]] * constraint->direction[k];
       }
-      constraint->from[n] -= constraint_followed(constraint, p->displacement, n);
+      constraint->from[n] -= constraint_followed(constraint, p->displacement.row, n);
     }
   }
   take_up_forces(loading, p, time);
@@ -265,7 +265,7 @@ void loading_state(Loading *loading, StateList *list)
 static void clear(const Selection *selection, Particles *p)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < p->motions; ++k) make_zero(&p->external[k][selection->places[n]]);
+    for (int k = 0; k < p->space.rows; ++k) make_zero(&p->external.row[k][selection->places[n]]);
 }
 
 /** Loads may overlap: they are cleared first, then added. */

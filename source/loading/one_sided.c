@@ -146,21 +146,21 @@ int64_t one_sided_key(const Loading *loading)
 double one_sided_gap(const Constraint *c, const Particles *p, int64_t entry, double time)
 {
   const double prescribed = constraint_displacement(c, time), pushes = c->one_sided->pushes;
-  if (c->platen) return pushes * (platen_centre_displacement(c, p->displacement) - prescribed);
+  if (c->platen) return pushes * (platen_centre_displacement(c, p->displacement.row) - prescribed);
   const int32_t i = c->load->selection.places[entry];
-  return pushes *
-         (constraint_along(c, p->displacement, i) - prescribed * constraint_part(c, entry) - constraint_from(c, entry));
+  return pushes * (constraint_along(c, p->displacement.row, i) - prescribed * constraint_part(c, entry) -
+                   constraint_from(c, entry));
 }
 
-void one_sided_find(const Loading *loading, double *const f[MOTIONS])
+void one_sided_find(const Loading *loading, const Vector *f)
 {
   for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c) {
     const OneSided *q = c->one_sided;
     if (!one_sided_acts(loading, c)) continue;
     for (int64_t n = 0; n < q->count; ++n)
       q->found[n] = q->open[n]  ? 0
-                    : c->platen ? -q->pushes * platen_centre_force(c, f)
-                                : -q->pushes * constraint_along(c, f, c->load->selection.places[n]);
+                    : c->platen ? -q->pushes * platen_centre_force(c, f->row)
+                                : -q->pushes * constraint_along(c, f->row, c->load->selection.places[n]);
   }
 }
 
@@ -171,16 +171,16 @@ void one_sided_accept(const Loading *loading)
       c->one_sided->presses[n] = fmax(0, c->one_sided->found[n]);
 }
 
-void one_sided_add_pressed(const Loading *loading, double factor, double *const f[MOTIONS])
+void one_sided_add_pressed(const Loading *loading, double factor, const Vector *f)
 {
   for (const Constraint *c = loading->constraints; c < loading->constraints + loading->constraint_count; ++c) {
     const OneSided *q = c->one_sided;
     for (int64_t n = 0; one_sided_acts(loading, c) && n < q->count; ++n) {
       const double force = factor * q->pushes * q->presses[n];
       if (c->platen)
-        platen_add_centre_force(c, f, force);
+        platen_add_centre_force(c, f->row, force);
       else
-        constraint_add(c, f, c->load->selection.places[n], force);
+        constraint_add(c, f->row, c->load->selection.places[n], force);
     }
   }
 }

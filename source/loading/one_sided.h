@@ -34,14 +34,14 @@ double one_sided_gap(const Constraint *constraint, const Particles *particles, i
 /** Computes `found`, the force with which each closed entry presses, from the forces on all particles; 0 for open
  * entries.
  *  @param[in] f  [motions][places] unbalanced forces without those of constraints */
-void one_sided_find(const Loading *loading, double *const f[MOTIONS]);
+void one_sided_find(const Loading *loading, const Vector *f);
 /** Accepts `found` as the forces that press; pulling forces become 0. */
 void one_sided_accept(const Loading *loading);
 
 /** Adds the forces with which entries pressed at the last accepted step. For entries that have let go since, no other
  * force replaces them.
  *  @param[in,out] f  [motions][places] */
-void one_sided_add_pressed(const Loading *loading, double factor, double *const f[MOTIONS]);
+void one_sided_add_pressed(const Loading *loading, double factor, const Vector *f);
 
 /** Adds the flags of open entries and the accepted forces to the state. @param[in] name  name of the constraint */
 void one_sided_state(const Constraint *constraint, const char *name, StateList *list);

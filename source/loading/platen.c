@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef double Vector[3];
+typedef double Triple[3];
 
 static const double platen_flat = 1e-6; /* spacings by which particles that stand in line across the direction differ */
 
 /** Subtracts the part of a vector along a unit vector. */
-static void platen_project(Vector v, const double unit[3])
+static void platen_project(Triple v, const double unit[3])
 {
   const double along = v[0] * unit[0] + v[1] * unit[1] + v[2] * unit[2];
   for (int k = 0; k < 3; ++k) v[k] -= along * unit[k];
@@ -24,7 +24,7 @@ static double platen_length(const double v[3])
 }
 
 /** Finds the centre of the volumes of a selection. */
-static void platen_centre(const Selection *s, const Particles *p, Vector centre)
+static void platen_centre(const Selection *s, const Particles *p, Triple centre)
 {
   double volume = 0;
   for (int k = 0; k < 3; ++k) centre[k] = 0;
@@ -38,7 +38,7 @@ static void platen_centre(const Selection *s, const Particles *p, Vector centre)
 
 /** Finds where the n-th particle stands from the centre, across the direction. */
 static void platen_arm(const Selection *s, const Particles *p, const double centre[3], const double direction[3],
-                       int64_t n, Vector arm)
+                       int64_t n, Triple arm)
 {
   for (int k = 0; k < 3; ++k) arm[k] = p->position[k][s->places[n]] - centre[k];
   platen_project(arm, direction);
@@ -48,14 +48,14 @@ static void platen_arm(const Selection *s, const Particles *p, const double cent
  * equal ones the first.
  *  @param[out] farthest  its arm  @return its index */
 static int64_t platen_farthest(const Selection *s, const Particles *p, const double centre[3],
-                               const double direction[3], const double *second, Vector farthest)
+                               const double direction[3], const double *second, Triple farthest)
 {
   const double nearly = 1 + 1e-9;
   double most = 0;
   int64_t found = 0;
   for (int k = 0; k < 3; ++k) farthest[k] = 0;
   for (int64_t n = 0; n < s->count; ++n) {
-    Vector arm;
+    Triple arm;
     platen_arm(s, p, centre, direction, n, arm);
     if (second) platen_project(arm, second);
     if (!(platen_length(arm) > nearly * most)) continue;
@@ -92,7 +92,7 @@ bool platen_is_narrow(const Constraint *c, const Body *body)
 
 bool platen_can_turn(const Constraint *c, const Body *body)
 {
-  Vector centre, farthest;
+  Triple centre, farthest;
   platen_centre(&c->load->selection, &body->particles, centre);
   platen_farthest(&c->load->selection, &body->particles, centre, c->direction, NULL, farthest);
   return platen_length(farthest) > platen_flat * body->coarsest->spacing;
@@ -102,7 +102,7 @@ bool platen_can_turn(const Constraint *c, const Body *body)
 static void platen_find_shares(Platen *q, const Selection *s, const Particles *p, const double centre[3],
                                const double direction[3])
 {
-  Vector lead[2] = {{0}};
+  Triple lead[2] = {{0}};
   double gram[2][2] = {{0}};
   for (int m = 0; m < q->leaders; ++m) platen_arm(s, p, centre, direction, q->leader[m], lead[m]);
   for (int a = 0; a < 2; ++a)
@@ -110,7 +110,7 @@ static void platen_find_shares(Platen *q, const Selection *s, const Particles *p
       for (int k = 0; k < 3; ++k) gram[a][b] += lead[a][k] * lead[b][k];
   const double determinant = q->leaders > 1 ? gram[0][0] * gram[1][1] - gram[0][1] * gram[1][0] : gram[0][0];
   for (int64_t n = 0; n < s->count; ++n) {
-    Vector arm;
+    Triple arm;
     double along[2] = {0};
     platen_arm(s, p, centre, direction, n, arm);
     for (int m = 0; m < q->leaders; ++m)
@@ -128,7 +128,7 @@ static int platen_create(Constraint *c, const Body *body, Error *error)
 {
   const Particles *p = &body->particles;
   const Selection *s = &c->load->selection;
-  Vector centre, first, second;
+  Triple centre, first, second;
   platen_centre(s, p, centre);
   const int64_t leader = platen_farthest(s, p, centre, c->direction, NULL, first);
   const double length = platen_length(first);
@@ -380,13 +380,13 @@ void platen_start(const Constraint *c, const Particles *p, double time, double s
   for (int64_t n = 0; n < s->count; ++n) {
     const int32_t i = s->places[n];
     const double along =
-        p->density[i] * p->volume[i] * (constraint_along(c, p->velocity, i) - constraint_part(c, n) * given);
+        p->density[i] * p->volume[i] * (constraint_along(c, p->velocity.row, i) - constraint_part(c, n) * given);
     for (int m = 0; m < constraint_leaders(c); ++m) momentum[m] += constraint_share(c, m, n) * along;
   }
   platen_accelerate(c, p, momentum, velocity);
   for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
-    constraint_add(c, p->velocity, i, velocity[m] - constraint_along(c, p->velocity, i));
+    constraint_add(c, p->velocity.row, i, velocity[m] - constraint_along(c, p->velocity.row, i));
   }
 }
 
@@ -398,8 +398,9 @@ static void platen_find_accelerations(const Constraint *c, const Particles *p, d
   double force[MAX_LEADERS] = {0};
   for (int64_t n = 0; n < s->count; ++n) {
     const int32_t i = s->places[n];
-    const double along = p->volume[i] * (constraint_along(c, p->internal, i) + constraint_along(c, p->external, i) -
-                                         p->density[i] * constraint_part(c, n) * q->given);
+    const double along =
+        p->volume[i] * (constraint_along(c, p->internal.row, i) + constraint_along(c, p->external.row, i) -
+                        p->density[i] * constraint_part(c, n) * q->given);
     for (int m = 0; m < constraint_leaders(c); ++m) force[m] += constraint_share(c, m, n) * along;
   }
   platen_accelerate(c, p, force, acceleration);
@@ -416,7 +417,7 @@ static bool platen_pulls(const Constraint *c, const Particles *p, const double a
     double moved = c->part[n] * q->given;
     for (int m = 0; m < q->leaders; ++m) moved += q->share[m][n] * acceleration[m];
     sum += c->part[n] * p->volume[i] *
-           (p->density[i] * moved - constraint_along(c, p->internal, i) - constraint_along(c, p->external, i));
+           (p->density[i] * moved - constraint_along(c, p->internal.row, i) - constraint_along(c, p->external.row, i));
   }
   return c->one_sided->pushes * sum < 0;
 }
@@ -435,22 +436,22 @@ void platen_push(const Constraint *c, Particles *p, double time)
   }
   for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
-    constraint_add(c, p->external, i,
-                   p->density[i] * acceleration[m] - constraint_along(c, p->internal, i) -
-                       constraint_along(c, p->external, i));
+    constraint_add(c, p->external.row, i,
+                   p->density[i] * acceleration[m] - constraint_along(c, p->internal.row, i) -
+                       constraint_along(c, p->external.row, i));
   }
 }
 
-void platen_share_mass(const Constraint *c, const Particles *p, double *const acceleration[MOTIONS])
+void platen_share_mass(const Constraint *c, const Particles *p, const Vector *acceleration)
 {
   double force[MAX_LEADERS] = {0}, shared[MAX_LEADERS];
   for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
-    force[m] = p->density[i] * p->volume[i] * constraint_along(c, acceleration, i);
+    force[m] = p->density[i] * p->volume[i] * constraint_along(c, acceleration->row, i);
   }
   platen_accelerate(c, p, force, shared);
   for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
-    constraint_add(c, acceleration, i, shared[m] - constraint_along(c, acceleration, i));
+    constraint_add(c, acceleration->row, i, shared[m] - constraint_along(c, acceleration->row, i));
   }
 }

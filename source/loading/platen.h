@@ -56,6 +56,6 @@ void platen_push(const Constraint *constraint, Particles *particles, double time
 
 /** Replaces the accelerations of the leaders, which are generalised forces over their own masses, by those of the plate
  * with all masses on it. */
-void platen_share_mass(const Constraint *constraint, const Particles *particles, double *const acceleration[MOTIONS]);
+void platen_share_mass(const Constraint *constraint, const Particles *particles, const Vector *acceleration);
 
 #endif

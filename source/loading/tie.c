@@ -151,12 +151,12 @@ void tie_groups_push(const TieGroups groups[3], Particles *p)
       double force = 0, mass = 0;
       for (int64_t n = groups[k].first[g]; n < groups[k].first[g + 1]; ++n) {
         const int32_t i = groups[k].places[n];
-        force += (p->internal[k][i] + p->external[k][i]) * p->volume[i];
+        force += (p->internal.row[k][i] + p->external.row[k][i]) * p->volume[i];
         mass += p->density[i] * p->volume[i];
       }
       for (int64_t n = groups[k].first[g]; n < groups[k].first[g + 1]; ++n) {
         const int32_t i = groups[k].places[n];
-        p->external[k][i] = p->density[i] * (force / mass) - p->internal[k][i];
+        p->external.row[k][i] = p->density[i] * (force / mass) - p->internal.row[k][i];
       }
     }
   }
@@ -169,7 +169,7 @@ void tie_groups_keep(const TieGroups groups[3], Particles *p, double *const acce
     TEAM_FOR (g, groups[k].count) {
       const int32_t one = groups[k].places[groups[k].first[g]];
       for (int64_t n = groups[k].first[g]; n < groups[k].first[g + 1]; ++n) {
-        p->velocity[k][groups[k].places[n]] = p->velocity[k][one];
+        p->velocity.row[k][groups[k].places[n]] = p->velocity.row[k][one];
         acceleration[k][groups[k].places[n]] = acceleration[k][one];
       }
     }
@@ -183,10 +183,10 @@ void tie_groups_join(const TieGroups groups[3], Particles *p)
       double momentum = 0, mass = 0;
       for (int64_t n = groups[k].first[g]; n < groups[k].first[g + 1]; ++n) {
         const int32_t i = groups[k].places[n];
-        momentum += p->density[i] * p->volume[i] * p->velocity[k][i];
+        momentum += p->density[i] * p->volume[i] * p->velocity.row[k][i];
         mass += p->density[i] * p->volume[i];
       }
       for (int64_t n = groups[k].first[g]; n < groups[k].first[g + 1]; ++n)
-        p->velocity[k][groups[k].places[n]] = momentum / mass;
+        p->velocity.row[k][groups[k].places[n]] = momentum / mass;
     }
 }

@@ -9,7 +9,6 @@
 #include "model/plausibility.h"
 #include "model/plausibility_parts.h"
 #include "model/sized.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -157,7 +156,7 @@ static void even_stress(const void *domain, const uint8_t *marked, double *const
 }
 
 /** Sets the displacements of a uniform uniaxial stress along an axis, with the strain `size` along that axis. */
-static void set_even_pull(const breccia_model *model, int axis, double size, double *const displacement[3])
+static void set_even_pull(const breccia_model *model, int axis, double size, const Vector *displacement)
 {
   const Domain *d = &model->domain;
   const Particles *p = d->particles;
@@ -169,7 +168,7 @@ static void set_even_pull(const breccia_model *model, int axis, double size, dou
     const bool wide = !solid && (bonds || plane_strain);
     const double across = wide ? poisson / (1 - poisson) : poisson;
     for (int k = 0; k < d->body.dimensions; ++k)
-      displacement[k][i] = size * (k == axis ? 1 : -across) * p->position[k][i];
+      displacement->row[k][i] = size * (k == axis ? 1 : -across) * p->position[k][i];
   }
 }
 
@@ -180,29 +179,30 @@ static int even_pull(void *context, int axis, double *force, Error *error)
   breccia_model *model = context;
   Domain *d = &model->domain;
   TensorCopy tensors;
-  double *displacement[MOTIONS], *internal[MOTIONS] = {0}, *beside[3] = {0};
+  Vector displacement = {0}, internal = {0}, beside = {0};
   bool done = tensor_copy_create(&tensors, d, "faces", error) == BRECCIA_OK;
-  done &= vectors_make(displacement, d->particles, "faces", error);
-  done = done && vectors_make(internal, d->particles, "faces", error);
-  for (int k = 0; k < 3; ++k) done &= (beside[k] = places_array(d->particles->places, "faces", error)) != NULL;
+  done = done && vector_create(&displacement, &d->particles->space, "faces", error) &&
+         vector_create(&internal, &d->particles->space, "faces", error) &&
+         vector_create(&beside, &d->particles->space, "faces", error);
   if (done) {
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
-    set_even_pull(model, axis, size, displacement);
+    set_even_pull(model, axis, size, &displacement);
     tensor_copy_save(&tensors, d);
-    domain_evaluate(d, &(Evaluation){.displacement = displacement, .internal = internal});
-    domain_forces_beside(d, displacement, beside);
+    domain_evaluate(d, &(Evaluation){.displacement = &displacement, .internal = &internal});
+    domain_forces_beside(d, &displacement, &beside);
     tensor_copy_restore(&tensors, d);
     domain_set_elastic_stage(d, elastic);
     domain_show_states(d, NULL);
     for (int32_t n = 0; n < d->particles->count; ++n) {
       const int32_t i = d->particles->place_of[n];
-      force[i] = (internal[axis][i] - beside[axis][i]) / (size * material_young(&d->materials[d->material[i / SLICE]]));
+      force[i] = (internal.row[axis][i] - beside.row[axis][i]) /
+                 (size * material_young(&d->materials[d->material[i / SLICE]]));
     }
   }
-  for (int k = 0; k < 3; ++k) places_free(&beside[k]);
-  vectors_free(displacement);
-  vectors_free(internal);
+  vector_destroy(&beside);
+  vector_destroy(&displacement);
+  vector_destroy(&internal);
   tensor_copy_destroy(&tensors);
   return done ? BRECCIA_OK : BRECCIA_FAILURE;
 }
@@ -439,10 +439,8 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->plausibility);
   text_free(&model->outcome);
   text_free(&model->stage);
-  for (int k = 0; k < MOTIONS; ++k) {
-    places_free(&model->left_displacement[k]);
-    places_free(&model->left_velocity[k]);
-  }
+  vector_destroy(&model->left_displacement);
+  vector_destroy(&model->left_velocity);
   free(model->compressions.stress);
   free(model->compressions.at);
   text_free(&model->thin_layers);
@@ -483,21 +481,19 @@ int model_take_motion(breccia_model *model, Error *error)
 {
   if (!model->motion_is_left) return BRECCIA_OK;
   model->motion_is_left = false;
-  return solver_take_motion(&model->solver, model->left_displacement, model->left_velocity, error);
+  return solver_take_motion(&model->solver, &model->left_displacement, &model->left_velocity, error);
 }
 
 /** Keeps the motion as it is left to the program. */
 static int model_leave_motion(breccia_model *model, Error *error)
 {
+  static const char label[] = "motion of a program";
   const Particles *p = model->domain.particles;
-  const size_t bytes = sizeof(double) * (size_t)p->places;
-  for (int k = 0; k < p->motions; ++k) {
-    double **u = &model->left_displacement[k], **v = &model->left_velocity[k];
-    if (!*u && !(*u = places_array(p->places, "motion of a program", error))) return BRECCIA_FAILURE;
-    if (!*v && !(*v = places_array(p->places, "motion of a program", error))) return BRECCIA_FAILURE;
-    memcpy(*u, p->displacement[k], bytes);
-    memcpy(*v, p->velocity[k], bytes);
-  }
+  Vector *u = &model->left_displacement, *v = &model->left_velocity;
+  if (!vector_exists(u) && !vector_create(u, &p->space, label, error)) return BRECCIA_FAILURE;
+  if (!vector_exists(v) && !vector_create(v, &p->space, label, error)) return BRECCIA_FAILURE;
+  vector_copy(u, &p->displacement);
+  vector_copy(v, &p->velocity);
   model->motion_is_left = true;
   return BRECCIA_OK;
 }

@@ -63,7 +63,7 @@ struct breccia_model {
   int64_t run_steps;
   const volatile int *interrupted; /* of breccia_options */
   bool motion_is_left;             /* breccia_model_step has left a motion, which the program may have changed since: */
-  double *left_displacement[MOTIONS], *left_velocity[MOTIONS];
+  Vector left_displacement, left_velocity;
 };
 
 typedef struct Entry { /* what a public function that computes gives back at its end */

@@ -104,13 +104,13 @@ static int write_states(breccia_model *model, const char *folder, const Modes *m
   free(frequencies);
   for (int n = 0; n < modes->count && !status; ++n) {
     for (int k = 0; k < 3; ++k) {
-      double *shape = modes->modes[n].displacement[k];
+      double *shape = modes->modes[n].displacement.row[k];
       for (int64_t i = 0; i < d->particles->places; ++i) shape[i] *= 0.1 * size;
-      held[k] = d->particles->displacement[k];
-      d->particles->displacement[k] = shape;
+      held[k] = d->particles->displacement.row[k];
+      d->particles->displacement.row[k] = shape;
     }
     status = result_file_write(file, d, &(ResultMoment){.step = n + 1, .time = n + 1}, error);
-    for (int k = 0; k < 3; ++k) d->particles->displacement[k] = held[k];
+    for (int k = 0; k < 3; ++k) d->particles->displacement.row[k] = held[k];
   }
   if (!status) status = result_file_show(file, error);
   result_file_destroy(&file);

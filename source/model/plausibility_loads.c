@@ -427,7 +427,7 @@ static int32_t least_balanced(breccia_model *model, double *most)
     const int32_t i = p->place_of[n];
     double square = 0;
     for (int k = 0; k < 3; ++k)
-      square += (p->internal[k][i] + p->external[k][i]) * (p->internal[k][i] + p->external[k][i]);
+      square += (p->internal.row[k][i] + p->external.row[k][i]) * (p->internal.row[k][i] + p->external.row[k][i]);
     if (held[i] || body_outside(&d->body, n) || square <= *most * *most) continue;
     *most = sqrt(square);
     found = i;
@@ -447,7 +447,7 @@ static void check_balance(breccia_model *model, const InitialStressSpec *item)
   if (at < 0) return;
   for (int32_t n = 0; n < p->count; ++n) {
     double square = 0;
-    for (int k = 0; k < 3; ++k) square += p->external[k][p->place_of[n]] * p->external[k][p->place_of[n]];
+    for (int k = 0; k < 3; ++k) square += p->external.row[k][p->place_of[n]] * p->external.row[k][p->place_of[n]];
     load = fmax(load, sqrt(square));
   }
   if (most <= usual * load) return;

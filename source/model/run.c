@@ -35,7 +35,7 @@ static void update_peaks(breccia_model *model)
     double u = 0, v = 0, s[6];
     for (int k = 0; k < 3; ++k) {
       u += pow(particles_moved(d->particles, k, place), 2);
-      v += pow(d->particles->velocity[k][place], 2);
+      v += pow(d->particles->velocity.row[k][place], 2);
     }
     for (int k = 0; k < 6; ++k) s[k] = d->stress[k][place];
     peaks->displacement = fmax(peaks->displacement, sqrt(u));

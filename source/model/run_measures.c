@@ -59,7 +59,7 @@ static double largest_displacement(const Particles *p)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double square = 0;
-    for (int k = 0; k < 3; ++k) square += p->displacement[k][i] * p->displacement[k][i];
+    for (int k = 0; k < 3; ++k) square += p->displacement.row[k][i] * p->displacement.row[k][i];
     largest = fmax(largest, square);
   }
   return sqrt(largest);

@@ -18,11 +18,11 @@ static void displacement(const Domain *d, int32_t place, double *value)
 }
 static void velocity(const Domain *d, int32_t place, double *value)
 {
-  vector_at(d->particles->velocity, place, value);
+  vector_at(d->particles->velocity.row, place, value);
 }
 static void internal_force(const Domain *d, int32_t place, double *value)
 {
-  vector_at(d->particles->internal, place, value);
+  vector_at(d->particles->internal.row, place, value);
 }
 static void rotation(const Domain *d, int32_t place, double *value)
 {
@@ -30,18 +30,18 @@ static void rotation(const Domain *d, int32_t place, double *value)
   for (int k = 0; k < 3; ++k) value[k] *= 180 / acos(-1);
 }
 /** Rows of rotations of a vector, about x, y, z; 0 where there are none. */
-static void rotations_at(const Particles *p, double *const from[MOTIONS], int32_t place, double *value)
+static void rotations_at(const Vector *from, int32_t place, double *value)
 {
-  for (int k = 0; k < 3; ++k) value[k] = p->motions == MOTIONS ? from[ROTATION + k][place] : 0;
-  if (p->motions == ROTATION + 1) value[2] = from[ROTATION][place];
+  for (int k = 0; k < 3; ++k) value[k] = 0;
+  for (int k = from->space->rotation; k < from->space->rows; ++k) value[from->space->row[k].axis] = from->row[k][place];
 }
 static void angular_velocity(const Domain *d, int32_t place, double *value)
 {
-  rotations_at(d->particles, d->particles->velocity, place, value);
+  rotations_at(&d->particles->velocity, place, value);
 }
 static void internal_moment(const Domain *d, int32_t place, double *value)
 {
-  rotations_at(d->particles, d->particles->internal, place, value);
+  rotations_at(&d->particles->internal, place, value);
 }
 static void stress(const Domain *d, int32_t place, double *value)
 {

@@ -200,8 +200,8 @@ static void look_at_layer(const Profile *profile, int layer, const Domain *d, do
     double look[2][6];
     domain_look(d, i, look[0], look[1]);
     for (int k = 0; k < 3; ++k) {
-      now[MOVED + k] += p->displacement[k][i] - (p->zero[k] ? p->zero[k][i] : 0);
-      now[SPEED + k] += p->velocity[k][i];
+      now[MOVED + k] += p->displacement.row[k][i] - (p->zero[k] ? p->zero[k][i] : 0);
+      now[SPEED + k] += p->velocity.row[k][i];
     }
     for (int of = 0; of < 2; ++of)
       for (int k = 0; k < 2; ++k) across[of][k] += look[of][shear[profile->axis][k]];

@@ -154,7 +154,7 @@ static void mean(double *const from[3], const Selection *s, double *values)
 static void displacement_row(const Watch *w, const Solver *s, double *values)
 {
   const Particles *p = s->domain->particles;
-  mean(p->displacement, &w->selection, values);
+  mean(p->displacement.row, &w->selection, values);
   if (!p->zero[0]) return;
   double zero[3];
   mean(p->zero, &w->selection, zero);
@@ -162,7 +162,7 @@ static void displacement_row(const Watch *w, const Solver *s, double *values)
 }
 static void velocity_row(const Watch *w, const Solver *s, double *values)
 {
-  mean(s->domain->particles->velocity, &w->selection, values);
+  mean(s->domain->particles->velocity.row, &w->selection, values);
 }
 static void force_row(const Watch *w, const Solver *s, double *values)
 {
@@ -170,7 +170,7 @@ static void force_row(const Watch *w, const Solver *s, double *values)
   for (int k = 0; k < 3; ++k) {
     values[k] = 0;
     for (int64_t n = 0; n < w->selection.count; ++n)
-      values[k] += p->internal[k][w->selection.places[n]] * p->volume[w->selection.places[n]];
+      values[k] += p->internal.row[k][w->selection.places[n]] * p->volume[w->selection.places[n]];
   }
 }
 static void reaction_row(const Watch *w, const Solver *s, double *values)
@@ -219,7 +219,7 @@ static void distances(const Watch *w, const Solver *s, double *now, double *refe
   *now = *reference = 0;
   for (int k = 0; k < 3; ++k) {
     double xi = p->position[k][w->ends[1]] - p->position[k][w->ends[0]];
-    double y = xi + p->displacement[k][w->ends[1]] - p->displacement[k][w->ends[0]];
+    double y = xi + p->displacement.row[k][w->ends[1]] - p->displacement.row[k][w->ends[0]];
     *now += y * y;
     if (p->zero[k]) xi += p->zero[k][w->ends[1]] - p->zero[k][w->ends[0]];
     *reference += xi * xi;

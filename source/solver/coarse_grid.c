@@ -396,31 +396,24 @@ static void add_support(const Constraint *c, int64_t n, void *context)
 static int add_springs(CoarseGrid *g, const Unknowns *u, double mass_factor, Error *error)
 {
   const Particles *p = g->domain->particles;
-  double *v[3] = {NULL}, *change[3] = {NULL};
-  bool well = true;
-  for (int k = 0; k < 3; ++k) {
-    well &= (v[k] = places_array(p->places, "coarse grid", error)) != NULL;
-    well &= (change[k] = places_array(p->places, "coarse grid", error)) != NULL;
-  }
+  Vector v = {0}, change = {0};
+  const bool well =
+      vector_create(&v, &p->space, "coarse grid", error) && vector_create(&change, &p->space, "coarse grid", error);
   for (int axis = 0; axis < g->axes && well; ++axis) {
     const double direction[3] = {axis == 0, axis == 1, axis == 2};
-    for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) {
-        v[k][i] = k == axis;
-        change[k][i] = 0;
-      }
-    loading_change(u->loading, p, v, change);
+    vector_clear(&v);
+    vector_clear(&change);
+    for (int64_t n = 0; n < p->count; ++n) v.row[axis][p->place_of[n]] = 1;
+    loading_change(u->loading, p, v.row, change.row);
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      const double stiffness = p->volume[i] * (mass_factor * p->density[i] + fmax(0, -change[axis][i]));
+      const double stiffness = p->volume[i] * (mass_factor * p->density[i] + fmax(0, -change.row[axis][i]));
       if (stiffness > 0)
         hold(g, (double[3]){p->position[0][i], p->position[1][i], p->position[2][i]}, direction, stiffness);
     }
   }
-  for (int k = 0; k < 3; ++k) {
-    places_free(&v[k]);
-    places_free(&change[k]);
-  }
+  vector_destroy(&v);
+  vector_destroy(&change);
   return well ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -529,7 +522,7 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
 
 typedef struct Transfer {
   const CoarseGrid *grid;
-  double *const *f, *const *v;
+  const Vector *f, *v;
   const double *answer;
 } Transfer;
 
@@ -566,9 +559,10 @@ static void turn_shares(const CoarseGrid *g, const double at[3], int k, double s
 static void gather_moments(const Transfer *t, int32_t i, const double at[3], double sum[CORNERS * 3])
 {
   double share[CORNERS * 3];
-  for (int k = 0; k < t->grid->domain->particles->motions - ROTATION; ++k) {
-    turn_shares(t->grid, at, k, share);
-    for (int c = 0; c < CORNERS * 3; ++c) sum[c] += share[c] * t->f[ROTATION + k][i];
+  const VectorSpace *space = t->f->space;
+  for (int k = space->rotation; k < space->rows; ++k) {
+    turn_shares(t->grid, at, k - space->rotation, share);
+    for (int c = 0; c < CORNERS * 3; ++c) sum[c] += share[c] * t->f->row[k][i];
   }
 }
 
@@ -576,9 +570,10 @@ static void gather_moments(const Transfer *t, int32_t i, const double at[3], dou
 static void spread_turns(const Transfer *t, int32_t i, const double at[3], const double of[CORNERS * 3])
 {
   double share[CORNERS * 3];
-  for (int k = 0; k < t->grid->domain->particles->motions - ROTATION; ++k) {
-    turn_shares(t->grid, at, k, share);
-    for (int c = 0; c < CORNERS * 3; ++c) t->v[ROTATION + k][i] += share[c] * of[c];
+  const VectorSpace *space = t->v->space;
+  for (int k = space->rotation; k < space->rows; ++k) {
+    turn_shares(t->grid, at, k - space->rotation, share);
+    for (int c = 0; c < CORNERS * 3; ++c) t->v->row[k][i] += share[c] * of[c];
   }
 }
 
@@ -595,7 +590,7 @@ static void gather_element(void *context, int64_t e)
     locate_place(g, i, at);
     interpolate(g->axes, at, share);
     for (int k = 0; k < g->axes; ++k)
-      for (int c = 0; c < 1 << g->axes; ++c) sum[CORNERS * k + c] += share[c] * t->f[k][i];
+      for (int c = 0; c < 1 << g->axes; ++c) sum[CORNERS * k + c] += share[c] * t->f->row[k][i];
     if (turns(g, i)) gather_moments(t, i, at, sum);
   }
   memcpy(g->parts + e * CORNERS * 3, sum, sizeof sum);
@@ -630,13 +625,13 @@ static void spread_element(void *context, int64_t e)
     for (int k = 0; k < g->axes; ++k) {
       double sum = 0;
       for (int c = 0; c < 1 << g->axes; ++c) sum += share[c] * of[CORNERS * k + c];
-      t->v[k][i] += sum;
+      t->v->row[k][i] += sum;
     }
     if (turns(g, i)) spread_turns(t, i, at, of);
   }
 }
 
-void coarse_grid_correct(CoarseGrid *g, double *const f[MOTIONS], double *const v[MOTIONS])
+void coarse_grid_correct(CoarseGrid *g, const Vector *f, const Vector *v)
 {
   Transfer t = {g, f, v, NULL};
   team_each(g->element_count, gather_element, &t);

@@ -29,7 +29,7 @@ int coarse_grid_prepare(CoarseGrid *grid, const Unknowns *unknowns, const double
 
 /** Adds to displacements v of all particles what the grid answers to forces f, by the team. Particles turn as the grid does where they are, by half of the
  *  curl of its displacements, and their moments act on it so. */
-void coarse_grid_correct(CoarseGrid *grid, double *const f[MOTIONS], double *const v[MOTIONS]);
+void coarse_grid_correct(CoarseGrid *grid, const Vector *f, const Vector *v);
 
 size_t coarse_grid_bytes(const CoarseGrid *grid);
 

@@ -1,7 +1,6 @@
 /* Conjugate gradients on products K v (Hestenes and Stiefel 1952), with a preconditioner of two levels. They need a stiffness that is symmetric and resists
  * every motion, and notice where it is not. */
 #include "solver/preconditioner.h"
-#include "solver/vectors.h"
 
 #include "base/memory.h"
 #include <math.h>
@@ -11,8 +10,8 @@ enum { MOST_ITERATIONS = 20000 };
 
 typedef struct Gradients {
   Preconditioner preconditioner;
-  double *rest[MOTIONS], *direction[MOTIONS];
-  double *product[MOTIONS]; /* with K; then what the preconditioner makes of the rest */
+  Vector rest, direction;
+  Vector product; /* with K; then what the preconditioner makes of the rest */
 } Gradients;
 
 static double suits(const LinearSolver *s)
@@ -25,9 +24,9 @@ static void destroy(LinearSolver *s)
 {
   Gradients *g = s->own;
   if (!g) return;
-  vectors_free(g->rest);
-  vectors_free(g->direction);
-  vectors_free(g->product);
+  vector_destroy(&g->rest);
+  vector_destroy(&g->direction);
+  vector_destroy(&g->product);
   preconditioner_destroy(&g->preconditioner);
   free(g);
 }
@@ -37,47 +36,46 @@ static int create(LinearSolver *s, Error *error)
   const Particles *p = s->domain->particles;
   Gradients *g = s->own = memory_zeroed(1, sizeof *g, "conjugate gradients", error);
   const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, false, error) ||
-                      !vectors_make(g->rest, p, "conjugate gradients", error) ||
-                      !vectors_make(g->direction, p, "conjugate gradients", error) ||
-                      !vectors_make(g->product, p, "conjugate gradients", error);
+                      !vector_create(&g->rest, &p->space, "conjugate gradients", error) ||
+                      !vector_create(&g->direction, &p->space, "conjugate gradients", error) ||
+                      !vector_create(&g->product, &p->space, "conjugate gradients", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 static int prepare(LinearSolver *s, Error *error)
 {
   Gradients *g = s->own;
-  return preconditioner_prepare(&g->preconditioner, s, g->direction, g->product, error);
+  return preconditioner_prepare(&g->preconditioner, s, &g->direction, &g->product, error);
 }
 
-static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-                 LinearRecord *record, Error *error)
+static int solve(LinearSolver *s, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+                 Error *error)
 {
   (void)error;
   Gradients *g = s->own;
   const Unknowns *u = &s->unknowns;
-  const Domain *d = s->domain;
   const double first = unknowns_product_of_forces(u, f, f);
   double rest = first, slope = 0;
-  vectors_combine(d, 0, g->rest, 1, f);
+  vector_combine(0, &g->rest, 1, f);
   record->unsuited = !g->preconditioner.is_symmetric;
   while (!record->unsuited && record->iterations < MOST_ITERATIONS && rest > tolerance * tolerance * first) {
     record->stopped = s->allowed && record->iterations >= s->allowed;
     if (record->stopped) break;
-    preconditioner_apply(&g->preconditioner, s, g->rest, g->product);
-    const double next = unknowns_work(u, g->rest, g->product);
-    vectors_combine(d, record->iterations ? next / slope : 0, g->direction, 1, g->product);
+    preconditioner_apply(&g->preconditioner, s, &g->rest, &g->product);
+    const double next = vector_inner(&g->rest, &g->product, 1);
+    vector_combine(record->iterations ? next / slope : 0, &g->direction, 1, &g->product);
     slope = next;
-    linear_solver_apply(s, g->direction, g->product);
-    unknowns_clear_rest(u, g->direction);
-    const double curvature = unknowns_work(u, g->product, g->direction);
+    linear_solver_apply(s, &g->direction, &g->product);
+    unknowns_clear_rest(u, &g->direction);
+    const double curvature = vector_inner(&g->product, &g->direction, 1);
     ++record->iterations;
     if (!(curvature > 0)) {
       record->indefinite = record->unsuited = true;
       break;
     }
-    vectors_combine(d, 1, v, slope / curvature, g->direction);
-    vectors_combine(d, 1, g->rest, -slope / curvature, g->product);
-    rest = unknowns_product_of_forces(u, g->rest, g->rest);
+    vector_combine(1, v, slope / curvature, &g->direction);
+    vector_combine(1, &g->rest, -slope / curvature, &g->product);
+    rest = unknowns_product_of_forces(u, &g->rest, &g->rest);
   }
   record->residual = first > 0 ? sqrt(rest / first) : 0;
   return BRECCIA_OK;
@@ -87,7 +85,8 @@ static size_t bytes(const LinearSolver *s)
 {
   const Gradients *g = s->own;
   const Particles *p = s->domain->particles;
-  return (3 * (size_t)p->motions + 1) * sizeof(double) * (size_t)p->places + preconditioner_bytes(&g->preconditioner);
+  return (3 * (size_t)p->space.rows + 1) * sizeof(double) * (size_t)p->places +
+         preconditioner_bytes(&g->preconditioner);
 }
 
 extern const LinearType residuals_linear;

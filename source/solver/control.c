@@ -218,7 +218,7 @@ double control_value(const Control *c, double *const v[3])
 double control_shown(const Control *c)
 {
   const Particles *p = c->domain->particles;
-  return control_value(c, p->displacement) - (p->zero[0] ? control_value(c, p->zero) : 0);
+  return control_value(c, p->displacement.row) - (p->zero[0] ? control_value(c, p->zero) : 0);
 }
 
 /** Lets the value of a path count displacements along v. */
@@ -244,7 +244,7 @@ static void consider(void *context, int64_t place, const Bond *bond)
 {
   Search *s = context;
   Control *c = s->control;
-  double *const *u = c->domain->particles->displacement;
+  double *const *u = c->domain->particles->displacement.row;
   double along[3], stretch = 0, now = 0;
   for (int k = 0; k < 3; ++k) {
     along[k] = bond->xi[k] / (bond->length * bond->length);
@@ -274,27 +274,18 @@ static void consider_broken(Search *s)
   }
 }
 
-/** Largest component. */
-static double largest_of(const Particles *p, double *const v[3])
-{
-  double most = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(v[k][i]));
-  return most;
-}
-
 /** Lets the value be the stretch of the bond that v stretches or shortens the most. Where the body is torn, v moves its parts as they are, and what
  *  bonds show of it are roundings: then a broken one is taken, across which the parts go on to open. */
-static void take_bond(Control *c, double *const v[3])
+static void take_bond(Control *c, const Vector *v)
 {
   const double roundings = 1e-6; /* of mean strains */
   const Particles *p = c->domain->particles;
-  Search search = {c, v, 0};
+  Search search = {c, v->row, 0};
   double low[3], high[3], size = 0;
   each_bond(c, consider, &search);
   particles_bounds(p, low, high);
   for (int k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
-  if (search.most * size > roundings * largest_of(p, v)) return;
+  if (search.most * size > roundings * vector_largest(v)) return;
   search.most = 0;
   consider_broken(&search);
 }
@@ -327,11 +318,11 @@ double control_target(Control *c, double before, double after)
   return now + c->step;
 }
 
-double control_aim(Control *c, double *const motion[3])
+double control_aim(Control *c, const Vector *motion)
 {
   if (!c->open) return 0;
   if (follows_path(c))
-    point_along(c, motion);
+    point_along(c, motion->row);
   else
     take_bond(c, motion);
   return control_shown(c);
@@ -347,10 +338,10 @@ static const char *measure_key(const Control *c)
                                 : "arc length of";
 }
 
-int control_check_answer(const Control *c, double *const motion[3], Error *error)
+int control_check_answer(const Control *c, const Vector *motion, Error *error)
 {
   const double least = 1e-7; /* of the largest motion: the longest beam that bends stretches by a thousandth of it */
-  const double most = largest_of(c->domain->particles, motion);
+  const double most = vector_largest(motion);
   double weights = 0;
   for (int64_t n = 0; n < c->count; ++n)
     for (int k = 0; k < 3; ++k) weights += fabs(c->weight[k][n]);
@@ -362,7 +353,7 @@ int control_check_answer(const Control *c, double *const motion[3], Error *error
     return node_error(c->reader->document, section_node(c->spec, "to"), error,
                       "to: %g is its value at the beginning, so that the controlled loads have nothing to do",
                       c->spec->to);
-  if (!isfinite(most) || !(fabs(control_value(c, motion)) <= least * weights * most)) return BRECCIA_OK;
+  if (!isfinite(most) || !(fabs(control_value(c, motion->row)) <= least * weights * most)) return BRECCIA_OK;
   return node_error(c->reader->document, section_node(c->spec, measure_key(c)), error,
                     "%s: it does not change with the controlled loads, so that no factor of theirs can bring it about; "
                     "take what they move, in the direction in which they do",

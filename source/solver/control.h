@@ -58,10 +58,10 @@ void control_open(Control *control);
 /** Finds what is measured, if it is yet to be found.
  *  @param[in] motion  displacements where the factor of controlled loads grows by 1
  *  @return by how much the value, and so its target, is another now */
-double control_aim(Control *control, double *const motion[3]);
+double control_aim(Control *control, const Vector *motion);
 
 /** Says so where the controlled loads do not change what is measured. @param[in] motion  as above */
-int control_check_answer(const Control *control, double *const motion[3], Error *error);
+int control_check_answer(const Control *control, const Vector *motion, Error *error);
 
 /** Its value at a vector over places. */
 double control_value(const Control *control, double *const v[3]);

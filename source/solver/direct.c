@@ -116,8 +116,8 @@ static double find_residual(Direct *d, const double *f, const double *x)
   return sqrt(square);
 }
 
-static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-                 LinearRecord *record, Error *error)
+static int solve(LinearSolver *s, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+                 Error *error)
 {
   enum { MOST = 3 }; /* corrections */
   Direct *d = s->own;
@@ -153,7 +153,7 @@ static LinearForesight foresee(const LinearSolver *s)
 {
   const Domain *d = s->domain;
   const int axes = d->body.dimensions;
-  const int motions = axes + d->particles->motions - ROTATION; /* of a particle */
+  const int motions = axes + d->particles->space.rows - d->particles->space.rotation; /* of a particle */
   const double count = (double)d->particles->count, small = 200, unknowns = motions * count;
   double row = 0;
   if (axes == 1 || count < small) return (LinearForesight){.bytes = (double)bytes(s)};

@@ -54,8 +54,8 @@ static double distortion_apart(const Domain *d)
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       if (!family_count(&d->family, i)) continue;
-      low = fmin(low, p->displacement[k][i]);
-      high = fmax(high, p->displacement[k][i]);
+      low = fmin(low, p->displacement.row[k][i]);
+      high = fmax(high, p->displacement.row[k][i]);
     }
     most = fmax(most, high - low);
   }

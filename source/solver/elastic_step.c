@@ -1,29 +1,28 @@
 #include "solver/elastic_step.h"
 
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
 int elastic_step_create(ElasticStep *s, const Domain *d, Error *error)
 {
-  const bool made = vectors_make(s->force, d->particles, "elastic stiffness", error) &&
-                    vectors_make(s->tried, d->particles, "elastic stiffness", error);
+  const bool made = vector_create(&s->force, &d->particles->space, "elastic stiffness", error) &&
+                    vector_create(&s->tried, &d->particles->space, "elastic stiffness", error);
   return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 size_t elastic_step_bytes(const Particles *p)
 {
-  return 2 * vectors_bytes(p);
+  return 2 * vector_bytes(&p->space);
 }
 
 void elastic_step_destroy(ElasticStep *s)
 {
-  vectors_free(s->force);
-  vectors_free(s->tried);
+  vector_destroy(&s->force);
+  vector_destroy(&s->tried);
 }
 
 /** Forces of an elastic body. */
-static void evaluate(Domain *d, double *const at[MOTIONS], double *const force[MOTIONS])
+static void evaluate(Domain *d, const Vector *at, const Vector *force)
 {
   const bool elastic = domain_in_elastic_stage(d);
   domain_set_elastic_stage(d, true);
@@ -33,27 +32,16 @@ static void evaluate(Domain *d, double *const at[MOTIONS], double *const force[M
 
 void elastic_step_prepare(ElasticStep *s, Domain *d)
 {
-  evaluate(d, d->particles->displacement, s->force);
+  evaluate(d, &d->particles->displacement, &s->force);
 }
 
-/** Of displacements, and of rotations over a spacing. */
-static double largest_of(const Domain *d, double *const v[MOTIONS])
+void elastic_step_apply(const ElasticStep *s, Domain *d, const Vector *v, const Vector *change)
 {
-  double largest = 0;
-  for (int k = 0; k < d->particles->motions; ++k) {
-    const double length = k < ROTATION ? 1 : d->body.largest_spacing;
-    for (int64_t i = 0; i < d->particles->places; ++i) largest = fmax(largest, length * fabs(v[k][i]));
-  }
-  return largest;
-}
-
-void elastic_step_apply(const ElasticStep *s, Domain *d, double *const v[MOTIONS], double *const change[MOTIONS])
-{
-  const Particles *p = d->particles;
   /* 1e-7 spacings: far above roundings, far below where anything is non-linear. */
-  const double largest = largest_of(d, v), h = largest > 0 ? 1e-7 * d->body.largest_spacing / largest : 1;
-  for (int k = 0; k < p->motions; ++k) memcpy(s->tried[k], p->displacement[k], sizeof(double) * (size_t)p->places);
-  vectors_combine(d, 1, s->tried, h, v);
-  evaluate(d, s->tried, change);
-  vectors_combine(d, 1 / h, change, -1 / h, s->force);
+  const double length = d->body.largest_spacing, largest = fmax(vector_largest(v), length * vector_largest_rotation(v)),
+               h = largest > 0 ? 1e-7 * length / largest : 1;
+  vector_copy(&s->tried, &d->particles->displacement);
+  vector_combine(1, &s->tried, h, v);
+  evaluate(d, &s->tried, change);
+  vector_combine(1 / h, change, -1 / h, &s->force);
 }

@@ -6,8 +6,8 @@
 #include "domain/domain.h"
 
 typedef struct ElasticStep {
-  double *force[MOTIONS]; /* internal forces per volume at the displacements held */
-  double *tried[MOTIONS]; /* displacements beside those */
+  Vector force; /* internal forces per volume at the displacements held */
+  Vector tried; /* displacements beside those */
 } ElasticStep;
 
 /** `step` is zero; destroy it in any case. */
@@ -20,7 +20,6 @@ void elastic_step_destroy(ElasticStep *step);
 void elastic_step_prepare(ElasticStep *step, Domain *domain);
 
 /** Changes of internal forces per volume with changes v of displacements; touches trial states. */
-void elastic_step_apply(const ElasticStep *step, Domain *domain, double *const v[MOTIONS],
-                        double *const change[MOTIONS]);
+void elastic_step_apply(const ElasticStep *step, Domain *domain, const Vector *v, const Vector *change);
 
 #endif

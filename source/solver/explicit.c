@@ -3,7 +3,6 @@
  * Works are summed by the trapezium rule over the step. The kinetic energy of v then grows by more than their sum, whatever the forces, by
  * exactly dt^2 / 8 sum m (g'^2 - g^2): the speeds at full steps are not those at which the works are done. */
 #include "solver/explicit.h"
-#include "solver/vectors.h"
 
 #include "base/team.h"
 #include "solver/damping.h"
@@ -98,15 +97,14 @@ const Section explicit_section = {.name = "explicit",
 static void list_state(Solver *run, StateList *list)
 {
   Explicit *s = run->own;
-  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration,
+  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration.row,
                    s->domain->particles->places);
-  particles_state_rotations(s->domain->particles, "angular acceleration", "1", STATE_COMMITTED, s->acceleration, list);
+  particles_state_rotations("angular acceleration", "1", STATE_COMMITTED, &s->acceleration, list);
   if (s->viscous.time > 0)
-    state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
+    state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag.row,
                      s->domain->particles->places);
   if (s->viscous.time > 0)
-    particles_state_rotations(s->domain->particles, "moment of stiffness drag", "stress", STATE_TRIED, s->viscous.drag,
-                              list);
+    particles_state_rotations("moment of stiffness drag", "stress", STATE_TRIED, &s->viscous.drag, list);
   state_add_number(list, "period", "time", STATE_COMMITTED, &s->period);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
@@ -129,12 +127,10 @@ static int create(Solver *run, Error *error)
                   .ledger = &run->ledger,
                   .force = run->force};
   /* Nothing leads out of a plane, or off a line: loads that would are refused. */
-  for (int k = 0; k < d->particles->motions; ++k)
+  for (int k = 0; k < d->particles->space.rows; ++k)
     if (body_moves_along(&d->body, k)) s->rows[s->row_count++] = k;
   ledger_begin(&run->ledger, d);
-  int failed = 0;
-  for (int k = 0; k < d->particles->motions; ++k)
-    failed |= !(s->acceleration[k] = places_reserved(d->particles->places, "accelerations", error));
+  const bool failed = !vector_reserve(&s->acceleration, &d->particles->space, "accelerations", error);
   s->sums = memory_zeroed((size_t)d->batch_count, sizeof *s->sums, "energy sums", error);
   int64_t parts = 0;
   for (int n = 0; n < run->loading->constraint_count; ++n)
@@ -160,7 +156,7 @@ static Kept explicit_kept(const Explicit *s, bool leaves)
 static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  return vectors_bytes(s->domain->particles) + stiffness_damping_bytes(&s->viscous, s->domain) +
+  return vector_bytes(&s->domain->particles->space) + stiffness_damping_bytes(&s->viscous, s->domain) +
          face_work_bytes(&s->face_work) + solver_kept_bytes(run, explicit_kept(s, s->domain->may_leave_tensors));
 }
 
@@ -181,7 +177,7 @@ static int make_room(Explicit *s, Solver *run, Error *error)
 static void destroy(Solver *run)
 {
   Explicit *s = run->own;
-  for (int k = 0; k < MOTIONS; ++k) places_free(&s->acceleration[k]);
+  vector_destroy(&s->acceleration);
   free(s->sums);
   free(s->parts);
   free(s->motions);
@@ -320,9 +316,9 @@ static void find_accelerations(void *context, int64_t b)
   Explicit *s = context;
   const Particles *p = s->domain->particles;
   const Batch *batch = &s->domain->batches[b];
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
-      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->inertia[k][i];
+      s->acceleration.row[k][i] = (p->internal.row[k][i] + p->external.row[k][i]) / p->inertia.row[k][i];
 }
 
 static int begin(Solver *run, Error *error)
@@ -333,17 +329,14 @@ static int begin(Solver *run, Error *error)
   domain_tell_time(d, s->clock->time, 0); /* laws with rates answered to the last step of the stage before already */
   domain_evaluate(d, NULL);
   s->face_work.fresh = false;
-  loading_move(s->loading, &(LoadMotion){.velocity = d->particles->velocity});
+  loading_move(s->loading, &(LoadMotion){.velocity = d->particles->velocity.row});
   loading_apply(s->loading, d->particles, s->clock->time);
-  loading_settle(s->loading, d->particles, d->particles->velocity, 0);
+  loading_settle(s->loading, d->particles, d->particles->velocity.row, 0);
   const Particles *p = d->particles;
-  s->ledger->kinetic = 0;
+  const Vector *v = &p->velocity;
   team_each(d->batch_count, find_accelerations, s);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      s->ledger->kinetic += 0.5 * p->inertia[k][i] * d->counted[i] * p->velocity[k][i] * p->velocity[k][i];
-      if (k < ROTATION) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
-    }
+  s->ledger->kinetic = 0.5 * vector_inner_mass(d->counted, &p->inertia, v, v);
+  s->ledger->given = fmax(s->ledger->given, vector_largest(v));
   return BRECCIA_OK;
 }
 
@@ -376,7 +369,7 @@ static void apply_loads(Explicit *s, double end)
   if (s->viscous.time > 0) stiffness_damping_put_back(&s->viscous, d);
   TEAM_SINGLE
   {
-    loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
+    loading_settle(s->loading, d->particles, d->particles->velocity.row, s->clock->time_step);
     explicit_note_open_platens(s);
   }
 }
@@ -398,7 +391,7 @@ static void answer(void *context)
   face_work_find(&s->face_work, d);
   TEAM_SINGLE
   {
-    const double work = face_work_done(&s->face_work, s->clock->time_step, d->particles->velocity);
+    const double work = face_work_done(&s->face_work, s->clock->time_step, d->particles->velocity.row);
     s->ledger->bond_work += work;
     s->ledger->external_work += work;
   }
@@ -414,7 +407,7 @@ static void answer(void *context)
     ++s->clock->step;
   }
   explicit_prescribe_velocities(s);
-  loading_keep_ties(s->loading, d->particles, s->acceleration);
+  loading_keep_ties(s->loading, d->particles, s->acceleration.row);
 }
 
 /** Drag of stiffness in the step under way. */
@@ -423,7 +416,7 @@ static void find_drag(Explicit *s)
   Domain *d = s->domain;
   stiffness_damping_find(&s->viscous, d, s->clock->time_step);
   /* Bonds that break next are judged by what particles showed before the step. */
-  if (d->failure.criterion || d->gave_up) domain_show_states(d, s->viscous.was);
+  if (d->failure.criterion || d->gave_up) domain_show_states(d, &s->viscous.was);
 }
 
 static void take_step(void *context)
@@ -443,7 +436,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   if (!s->face_work.fresh) face_work_renew(&s->face_work, s->domain);
   face_work_note(&s->face_work);
   explicit_foresee_motions(s);
-  loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
+  loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity.row,
                                          .lag = s->clock->time_step / 2,
                                          .damping = explicit_mass_damping(s)});
   if (s->viscous.time > 0) {

@@ -29,9 +29,9 @@ typedef struct Explicit {
   Ledger *ledger;
   bool force;    /* accept a chosen step above the stable one */
   double period; /* of `quasi_static`: of the slowest vibration that loads set off; else 0 */
-  double *acceleration[MOTIONS];
-  int rows[MOTIONS], row_count; /* of motion, that something can move */
-  StiffnessDamping viscous;     /* with damping.stiffness only */
+  Vector acceleration;
+  int rows[MAX_ROWS], row_count; /* of motion, that something can move */
+  StiffnessDamping viscous;      /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
     double from, to;

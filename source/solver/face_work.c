@@ -92,7 +92,7 @@ static void find_force(const Domain *d, int32_t place, double sum[3])
     const Region *region = domain_region(d, other);
     double state[3];
     if (region->type->face_force) continue;
-    region->type->half_state(region->formulation, p->displacement, NULL, other / SLICE,
+    region->type->half_state(region->formulation, p->displacement.row, NULL, other / SLICE,
                              family_slot(&d->family, other, place), other % SLICE, state);
     for (int k = 0; k < 3; ++k) sum[k] += sign * p->volume[other] * state[k];
   }

@@ -10,7 +10,7 @@
 typedef struct Held {
   int32_t place;
   int held, free;
-  double direction[MOTIONS][MOTIONS];
+  double direction[MAX_ROWS][MAX_ROWS];
 } Held;
 
 typedef struct Numbering {
@@ -37,10 +37,10 @@ static void place_held(Numbering *of)
     if (of->which[i]) of->held[of->which[i] - 1].place = (int32_t)i;
 }
 
-static double product(const double a[MOTIONS], const double b[MOTIONS])
+static double product(const double a[MAX_ROWS], const double b[MAX_ROWS])
 {
   double sum = 0;
-  for (int k = 0; k < MOTIONS; ++k) sum += a[k] * b[k];
+  for (int k = 0; k < MAX_ROWS; ++k) sum += a[k] * b[k];
   return sum;
 }
 
@@ -48,7 +48,7 @@ static double product(const double a[MOTIONS], const double b[MOTIONS])
 static void hold(Numbering *of, int32_t i, int row, const double direction[3])
 {
   Held *h = &of->held[of->which[i] - 1];
-  double whole[MOTIONS] = {0};
+  double whole[MAX_ROWS] = {0};
   for (int k = 0; k < 3; ++k)
     if (direction[k] != 0) whole[row + k] = direction[k];
   for (int m = 0; m < h->held; ++m)
@@ -98,7 +98,8 @@ static void follow_tie(Numbering *of, int32_t follower, int32_t leader, int axis
 /** Whether a row is no motion of a particle: out of a plane or line, or a rotation where there is none. */
 static bool is_flat(const Numbering *of, int32_t place, int row)
 {
-  return row < ROTATION ? of->unknowns->flat[row] : !particles_turn(of->unknowns->domain->particles, place);
+  const Particles *p = of->unknowns->domain->particles;
+  return p->space.row[row].kind == ROW_DISPLACEMENT ? of->unknowns->flat[row] : !particles_turn(p, place);
 }
 
 /** Directions across those that are held, of the axes along which the body extends: those that differ from them most come first. */
@@ -107,18 +108,18 @@ static void find_free(const Numbering *of, Held *h)
   int left = -h->held;
   for (int k = 0; k < of->motions; ++k) left += !is_flat(of, h->place, k);
   for (; h->free < left; ++h->free) {
-    double best = 0, chosen[MOTIONS] = {0};
+    double best = 0, chosen[MAX_ROWS] = {0};
     for (int k = 0; k < of->motions; ++k) {
-      double v[MOTIONS] = {0};
+      double v[MAX_ROWS] = {0};
       v[k] = 1;
       for (int m = 0; m < h->held + h->free; ++m) {
         const double *d = h->direction[m], along = product(v, d);
-        for (int j = 0; j < MOTIONS; ++j) v[j] -= along * d[j];
+        for (int j = 0; j < MAX_ROWS; ++j) v[j] -= along * d[j];
       }
       const double square = product(v, v);
       if (is_flat(of, h->place, k) || square < best + 1e-6) continue;
       best = square;
-      for (int j = 0; j < MOTIONS; ++j) chosen[j] = v[j] / sqrt(square);
+      for (int j = 0; j < MAX_ROWS; ++j) chosen[j] = v[j] / sqrt(square);
     }
     memcpy(h->direction[h->held + h->free], chosen, sizeof chosen);
   }
@@ -202,8 +203,8 @@ static void follow_row(const Constraint *c, int64_t n, void *context)
 Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
 {
   const Particles *p = u->domain->particles;
-  Numbering of = {.unknowns = u, .motions = p->motions};
-  const int64_t all = p->motions * p->places;
+  Numbering of = {.unknowns = u, .motions = p->space.rows};
+  const int64_t all = p->space.rows * p->places;
   of.follow = memory_zeroed((size_t)all, sizeof *of.follow, "unknowns", error);
   of.which = memory_zeroed((size_t)p->places, sizeof *of.which, "unknowns", error);
   bool failed = !of.follow || !of.which;

@@ -1,7 +1,6 @@
 #include "solver/implicit.h"
 #include "solver/flutter.h"
 #include "solver/stable_step.h"
-#include "solver/vectors.h"
 
 #include "base/memory.h"
 #include "loading/constraint.h"
@@ -128,10 +127,10 @@ static void list_state(Solver *run, StateList *list)
 {
   Implicit *s = run->own;
   const Particles *p = s->domain->particles;
-  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration, p->places);
-  particles_state_rotations(p, "angular acceleration", "1", STATE_COMMITTED, s->acceleration, list);
-  state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag, p->places);
-  particles_state_rotations(p, "damping moment", "energy", STATE_COMMITTED, s->drag, list);
+  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration.row, p->places);
+  particles_state_rotations("angular acceleration", "1", STATE_COMMITTED, &s->acceleration, list);
+  state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag.row, p->places);
+  particles_state_rotations("damping moment", "energy", STATE_COMMITTED, &s->drag, list);
   state_add_number(list, "next step", "time", STATE_LEARNED, &s->next);
   newton_state(&s->newton, list);
   state_add_number(list, "largest displacements", "length", STATE_COMMITTED, &s->shift);
@@ -144,11 +143,11 @@ static void destroy(Solver *run)
   newton_destroy(&s->newton);
   increment_destroy(&s->increment);
   pressing_destroy(&s->pressing);
-  vectors_free(s->acceleration);
-  vectors_free(s->drag);
-  vectors_free(s->velocity);
-  vectors_free(s->drag_then);
-  vectors_free(s->result);
+  vector_destroy(&s->acceleration);
+  vector_destroy(&s->drag);
+  vector_destroy(&s->velocity);
+  vector_destroy(&s->drag_then);
+  vector_destroy(&s->result);
   free(s);
   run->own = NULL;
 }
@@ -169,9 +168,11 @@ static int create(Solver *run, Error *error)
   s->newton.beside = &s->beside;
   ledger_begin(&run->ledger, run->domain);
   const Particles *p = run->domain->particles;
-  const bool made = vectors_make(s->acceleration, p, "accelerations", error) &&
-                    vectors_make(s->drag, p, "damping", error) && vectors_make(s->velocity, p, "velocities", error) &&
-                    vectors_make(s->drag_then, p, "damping", error) && vectors_make(s->result, p, "steps", error);
+  const bool made = vector_create(&s->acceleration, &p->space, "accelerations", error) &&
+                    vector_create(&s->drag, &p->space, "damping", error) &&
+                    vector_create(&s->velocity, &p->space, "velocities", error) &&
+                    vector_create(&s->drag_then, &p->space, "damping", error) &&
+                    vector_create(&s->result, &p->space, "steps", error);
   if (!made || increment_create(&s->increment, run->domain, run->loading, error)) return BRECCIA_FAILURE;
   if (pressing_create(&s->pressing, run->loading, error)) return BRECCIA_FAILURE;
   return newton_create(&s->newton, error);
@@ -253,7 +254,7 @@ static int measure(Solver *run, StepCost *cost, Error *error)
   Implicit *s = run->own;
   Newton *newton = &s->newton;
   const double step = implicit_longest(run->spec);
-  cost->bytes += (double)(increment_bytes(&s->increment, run) + VECTORS * vectors_bytes(s->domain->particles));
+  cost->bytes += (double)(increment_bytes(&s->increment, run) + VECTORS * vector_bytes(&s->domain->particles->space));
   newton->linear.mass_factor = 4 / (step * step);
   const int status = newton_measure(newton, cost, error);
   newton->linear.mass_factor = 0;
@@ -287,11 +288,11 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   const Implicit *s = run->own;
   const Particles *p = s->domain->particles;
   const int32_t i = constraint->load->selection.places[n];
-  return constraint_along(constraint, s->drag, i) +
-         p->inertia[constraint->row][i] * p->volume[i] *
+  return constraint_along(constraint, s->drag.row, i) +
+         p->inertia.row[constraint->row][i] * p->volume[i] *
              (constraint_part(constraint, n) *
                   constraint_acceleration(constraint, run->clock.time, run->clock.time_step) +
-              constraint_followed(constraint, s->acceleration, n));
+              constraint_followed(constraint, s->acceleration.row, n));
 }
 
 const SolverType implicit_solver = {.name = "implicit",

@@ -28,10 +28,10 @@ typedef struct Implicit {
   NewtonForces beside;
   Increment increment;
   Pressing pressing;
-  double *acceleration[MOTIONS];
-  double *drag[MOTIONS]; /* forces of damping, against velocities */
+  Vector acceleration;
+  Vector drag; /* forces of damping, against velocities */
   /* At the end of the step under way, as far as it has been iterated; `result` is whatever is worked out. */
-  double *velocity[MOTIONS], *drag_then[MOTIONS], *result[MOTIONS];
+  Vector velocity, drag_then, result;
   double length; /* of the step under way */
   double struck; /* energy that impacts on one-sided supports dissipate in the current step */
   double then;   /* time of the run at its end */

@@ -11,7 +11,6 @@
 #include "loading/constraint.h"
 #include "loading/one_sided.h"
 #include "loading/platen.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +20,7 @@ typedef struct Rates {
   const Constraint *constraint; /* whose velocity was found last */
   double rate, most;            /* it, and the largest of all */
   double time, step;
-  double *const *velocity;
+  const Vector *velocity;
 } Rates;
 
 static void prescribe_rate(const Constraint *c, int64_t n, void *context)
@@ -33,50 +32,47 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
     if (!c->row) r->most = fmax(r->most, fabs(r->rate) * constraint_most(c));
   }
   const int32_t i = c->load->selection.places[n];
-  const double wanted =
-      r->rate * constraint_part(c, n) - constraint_along(c, r->velocity, i) + constraint_followed(c, r->velocity, n);
-  constraint_add(c, r->velocity, i, wanted);
+  const double wanted = r->rate * constraint_part(c, n) - constraint_along(c, r->velocity->row, i) +
+                        constraint_followed(c, r->velocity->row, n);
+  constraint_add(c, r->velocity->row, i, wanted);
 }
 
 /** Corrects the motions of the leaders of platens that close in the current step: the motion that the scheme gives the
  * centre becomes the prescribed motion.
  *  @param[in,out] v  [motions][places] velocities if `velocities`, otherwise accelerations */
-static void implicit_still_leaders(const Implicit *s, double time, bool velocities, double *const v[MOTIONS])
+static void implicit_still_leaders(const Implicit *s, double time, bool velocities, const Vector *v)
 {
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *c = &s->loading->constraints[n];
     if (!c->platen || !c->platen->closes || !load_acts(s->loading, c->load)) continue;
     const double change = velocities ? constraint_velocity(c, time, s->length) - c->platen->velocity
                                      : constraint_acceleration(c, time, s->length) - c->platen->acceleration;
-    for (int m = 0; m < constraint_leaders(c); ++m) constraint_add(c, v, constraint_leader(c, m), change);
+    for (int m = 0; m < constraint_leaders(c); ++m) constraint_add(c, v->row, constraint_leader(c, m), change);
   }
 }
 
 /** Velocities at the end of the step: those of prescribed motions as prescribed, because the scheme makes them ring. */
-static void find_velocities(Implicit *s, double *const moved[MOTIONS], double time)
+static void find_velocities(Implicit *s, const Vector *moved, double time)
 {
-  const Particles *p = s->domain->particles;
   const double dt = s->length, beta = s->spec->beta, gamma = s->spec->gamma;
-  Rates r = {.time = time, .step = dt, .velocity = s->velocity};
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      s->velocity[k][i] = gamma / (beta * dt) * moved[k][i] + (1 - gamma / beta) * p->velocity[k][i] +
-                          dt * (1 - gamma / (2 * beta)) * s->acceleration[k][i];
-  implicit_still_leaders(s, time, true, s->velocity);
+  Rates r = {.time = time, .step = dt, .velocity = &s->velocity};
+  vector_sum_terms(&s->velocity, &(VectorTerms){{gamma / (beta * dt), 1 - gamma / beta, dt * (1 - gamma / (2 * beta))},
+                                                {moved, &s->domain->particles->velocity, &s->acceleration}});
+  implicit_still_leaders(s, time, true, &s->velocity);
   unknowns_each_row(&s->newton.linear.unknowns, prescribe_rate, &r);
   s->ledger->given = fmax(s->ledger->given, r.most);
 }
 
-/** Acceleration of a place at the end of the step, by the scheme. */
-static double acceleration_then(const Implicit *s, double *const moved[MOTIONS], int k, int64_t i)
+/** Accelerations at the end of the step by the scheme, into `result`. */
+static void implicit_accelerate(Implicit *s, const Vector *moved)
 {
   const double dt = s->length, beta = s->spec->beta;
-  return (moved[k][i] / dt - s->domain->particles->velocity[k][i]) / (beta * dt) -
-         (1 / (2 * beta) - 1) * s->acceleration[k][i];
+  vector_sum_terms(&s->result, &(VectorTerms){{1 / (beta * dt * dt), -1 / (beta * dt), 1 - 1 / (2 * beta)},
+                                              {moved, &s->domain->particles->velocity, &s->acceleration}});
 }
 
 /** Forces of damping at the displacements held, against these velocities. Trial states and forces of bonds are lost. */
-static int find_drag(Implicit *s, double *const velocity[MOTIONS], double *const drag[MOTIONS], Error *error)
+static int find_drag(Implicit *s, const Vector *velocity, const Vector *drag, Error *error)
 {
   Domain *d = s->domain;
   const Particles *p = d->particles;
@@ -89,11 +85,19 @@ static int find_drag(Implicit *s, double *const velocity[MOTIONS], double *const
     domain_set_elastic_stage(d, elastic);
     if (status) return status;
   }
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      drag[k][i] = p->volume[i] *
-                   (c.mass * p->inertia[k][i] * velocity[k][i] - (c.stiffness > 0 ? c.stiffness * drag[k][i] : 0));
+  if (c.stiffness > 0) vector_weigh(drag, p->volume, drag);
+  vector_weigh_product(&s->result, p->volume, &p->inertia, velocity);
+  vector_combine(-c.stiffness, drag, c.mass, &s->result);
   return BRECCIA_OK;
+}
+
+static void divide_by_masses(void *context, int64_t first, int64_t last)
+{
+  const Implicit *s = context;
+  const Particles *p = s->domain->particles;
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t i = first; i < last; ++i)
+      if (p->number[i] >= 0) s->acceleration.row[k][i] /= p->inertia.row[k][i] * p->volume[i];
 }
 
 /** Accelerations by the forces held, of tied particles by all of theirs; 0 where motions are prescribed. */
@@ -101,15 +105,10 @@ static void find_accelerations(Implicit *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      s->acceleration[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]) - s->drag[k][i];
-  unknowns_gather(u, s->acceleration);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) {
-      const int32_t i = p->place_of[n];
-      s->acceleration[k][i] /= p->inertia[k][i] * p->volume[i];
-    }
+  vector_weigh_sum(&s->acceleration, p->volume, &p->internal, &p->external);
+  vector_combine(1, &s->acceleration, -1, &s->drag);
+  unknowns_gather(u, &s->acceleration);
+  vector_each_tile(&p->space, divide_by_masses, s);
   for (int k = 0; k < 3; ++k) {
     const TieGroups *ties = &s->loading->ties[k];
     for (int64_t g = 0; g < ties->count; ++g) {
@@ -117,25 +116,25 @@ static void find_accelerations(Implicit *s)
       double mass = 0;
       for (int64_t n = ties->first[g]; n < ties->first[g + 1]; ++n)
         mass += p->density[ties->places[n]] * p->volume[ties->places[n]];
-      s->acceleration[k][one] *= p->density[one] * p->volume[one] / mass;
+      s->acceleration.row[k][one] *= p->density[one] * p->volume[one] / mass;
     }
   }
   for (int c = 0; c < s->loading->constraint_count; ++c) {
     const Constraint *constraint = &s->loading->constraints[c];
     if (constraint->platen && load_acts(s->loading, constraint->load))
-      platen_share_mass(constraint, p, s->acceleration);
+      platen_share_mass(constraint, p, &s->acceleration);
   }
-  unknowns_spread(u, NAN, s->acceleration);
+  unknowns_spread(u, NAN, &s->acceleration);
 }
 
 /* ---- forces beside those of bonds and loads ---- */
 
-static int prepare_forces(void *context, double *const moved[MOTIONS], double time, Error *error)
+static int prepare_forces(void *context, const Vector *moved, double time, Error *error)
 {
   Implicit *s = context;
   s->then = time;
   find_velocities(s, moved, time);
-  return find_drag(s, s->velocity, s->drag_then, error);
+  return find_drag(s, &s->velocity, &s->drag_then, error);
 }
 
 /** Gives a particle under a platen the acceleration of the plate: its mass is borne by the leaders, and the scheme
@@ -146,30 +145,44 @@ static void accelerate_with_platen(const Constraint *c, int64_t n, void *context
   const int32_t i = c->load->selection.places[n];
   if (!c->platen) return;
   const double given = c->platen->closes ? c->platen->acceleration : constraint_acceleration(c, s->then, s->length);
-  constraint_add(c, s->result, i,
-                 constraint_part(c, n) * given + constraint_followed(c, s->result, n) -
-                     constraint_along(c, s->result, i));
+  constraint_add(c, s->result.row, i,
+                 constraint_part(c, n) * given + constraint_followed(c, s->result.row, n) -
+                     constraint_along(c, s->result.row, i));
+}
+
+/** Operands of add_forces. */
+typedef struct Balance {
+  const Implicit *implicit;
+  const Vector *force;
+  double alpha, weight;
+} Balance;
+
+static void balance_tile(void *context, int64_t first, int64_t last)
+{
+  const Balance *of = context;
+  const Implicit *s = of->implicit;
+  const Particles *p = s->domain->particles;
+  for (int k = 0; k < of->force->space->rows; ++k)
+    for (int64_t i = first; i < last; ++i) {
+      const double before =
+          p->volume[i] * (s->increment.internal.row[k][i] + s->increment.external.row[k][i]) - s->drag.row[k][i];
+      s->result.row[k][i] *= p->inertia.row[k][i] * p->volume[i];
+      of->force->row[k][i] -= s->drag_then.row[k][i] + of->weight * (of->alpha * before + s->result.row[k][i]);
+    }
 }
 
 /** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
-static double add_forces(void *context, double *const moved[MOTIONS], double *const force[MOTIONS])
+static double add_forces(void *context, const Vector *moved, const Vector *force)
 {
   Implicit *s = context;
-  const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
   const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, moved, k, i);
+  implicit_accelerate(s, moved);
   unknowns_each_row(u, accelerate_with_platen, s);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
-      s->result[k][i] *= p->inertia[k][i] * p->volume[i];
-      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
-    }
+  vector_each_tile(force->space, balance_tile, &(Balance){s, force, alpha, weight});
   one_sided_add_pressed(s->loading, -weight * alpha, force);
-  unknowns_gather(u, s->result);
-  return unknowns_product_of_forces(u, s->result, s->result);
+  unknowns_gather(u, &s->result);
+  return unknowns_product_of_forces(u, &s->result, &s->result);
 }
 
 NewtonForces implicit_forces(Implicit *s)
@@ -179,26 +192,21 @@ NewtonForces implicit_forces(Implicit *s)
 
 /* ---- books ---- */
 
-static double kinetic_energy(const Domain *d, double *const velocity[MOTIONS])
+static double kinetic_energy(const Domain *d, const Vector *velocity)
 {
-  const Particles *p = d->particles;
-  double sum = 0;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      sum += 0.5 * p->inertia[k][i] * d->counted[i] * velocity[k][i] * velocity[k][i];
-  return sum;
+  return 0.5 * vector_inner_mass(d->counted, &d->particles->inertia, velocity, velocity);
 }
 
 typedef struct HeldEnergy {
   const Domain *domain;
-  double *const *velocity;
+  const Vector *velocity;
   double energy;
 } HeldEnergy;
 
 static void add_held_at(HeldEnergy *h, const Constraint *c, int32_t i)
 {
-  const double rate = constraint_along(c, h->velocity, i);
-  h->energy += 0.5 * h->domain->particles->inertia[c->row][i] * h->domain->counted[i] * rate * rate;
+  const double rate = constraint_along(c, h->velocity->row, i);
+  h->energy += 0.5 * h->domain->particles->inertia.row[c->row][i] * h->domain->counted[i] * rate * rate;
 }
 
 static void add_held(const Constraint *c, int64_t n, void *context)
@@ -224,13 +232,13 @@ static void add_held_leader(void *context, const Constraint *c, int32_t leader)
 
 static void clear_leader(void *context, const Constraint *c, int32_t leader)
 {
-  double *const *f = context;
+  double *const *f = ((const Vector *)context)->row;
   constraint_add(c, f, leader, -constraint_along(c, f, leader));
 }
 
 /** Kinetic energy of what moves as prescribed, and of particles under platens: their turning and their prescribed
  * motion share it. */
-static double held_energy(const Implicit *s, double *const velocity[MOTIONS])
+static double held_energy(const Implicit *s, const Vector *velocity)
 {
   HeldEnergy h = {.domain = s->domain, .velocity = velocity};
   unknowns_each_row(&s->newton.linear.unknowns, add_held, &h);
@@ -239,7 +247,7 @@ static double held_energy(const Implicit *s, double *const velocity[MOTIONS])
 }
 
 /** Leaves of forces those on motions that are wholly free. */
-static void gather_free(Implicit *s, double *const force[MOTIONS])
+static void gather_free(Implicit *s, const Vector *force)
 {
   unknowns_gather(&s->newton.linear.unknowns, force);
   each_leader(s, clear_leader, (void *)force);
@@ -249,22 +257,21 @@ static void gather_free(Implicit *s, double *const force[MOTIONS])
 static void book(Implicit *s)
 {
   const Particles *p = s->domain->particles;
-  const Unknowns *u = &s->newton.linear.unknowns;
-  double *const *moved = s->newton.moved, bonds = increment_bond_work(&s->increment, moved);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
-  gather_free(s, s->result);
-  const double damping = 0.5 * unknowns_work(u, s->result, moved);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      s->result[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i] + p->internal[k][i] +
-                                        p->external[k][i]) -
-                        s->drag[k][i] - s->drag_then[k][i];
-  one_sided_add_pressed(s->loading, 1, s->result);
-  gather_free(s, s->result);
-  const double freely = 0.5 * unknowns_work(u, s->result, moved);
-  const double kinetic = kinetic_energy(s->domain, s->velocity), held = held_energy(s, s->velocity);
-  const double kinetic_before = kinetic_energy(s->domain, p->velocity), held_before = held_energy(s, p->velocity);
+  const Vector *moved = &s->newton.moved;
+  const double bonds = increment_bond_work(&s->increment, moved);
+  vector_copy(&s->result, &s->drag);
+  vector_combine(1, &s->result, 1, &s->drag_then);
+  gather_free(s, &s->result);
+  const double damping = 0.5 * vector_inner(&s->result, moved, 1);
+  vector_sum_terms(&s->result,
+                   &(VectorTerms){{1, 1, 1}, {&s->increment.internal, &s->increment.external, &p->internal}});
+  vector_weigh_sum(&s->result, p->volume, &s->result, &p->external);
+  vector_sum_terms(&s->result, &(VectorTerms){{1, -1, -1}, {&s->result, &s->drag, &s->drag_then}});
+  one_sided_add_pressed(s->loading, 1, &s->result);
+  gather_free(s, &s->result);
+  const double freely = 0.5 * vector_inner(&s->result, moved, 1);
+  const double kinetic = kinetic_energy(s->domain, &s->velocity), held = held_energy(s, &s->velocity);
+  const double kinetic_before = kinetic_energy(s->domain, &p->velocity), held_before = held_energy(s, &p->velocity);
   s->ledger->bond_work += bonds;
   s->ledger->damping_work += damping + s->struck;
   s->ledger->damped |= s->struck > 0;
@@ -280,17 +287,16 @@ int implicit_begin(Solver *run, Error *error)
   Implicit *s = run->own;
   const Particles *p = s->domain->particles;
   domain_tell_time(s->domain, run->clock.time, 0);
-  if (find_drag(s, p->velocity, s->drag, error)) return BRECCIA_FAILURE;
+  if (find_drag(s, &p->velocity, &s->drag, error)) return BRECCIA_FAILURE;
   domain_evaluate(s->domain, NULL);
   increment_start(&s->increment);
-  loading_move(s->loading, &(LoadMotion){.velocity = p->velocity});
+  loading_move(s->loading, &(LoadMotion){.velocity = p->velocity.row});
   newton_apply_loads(&s->newton, run->clock.time);
-  loading_settle(s->loading, p, p->velocity, 0);
-  pressing_take_up(&s->newton, s->drag);
+  loading_settle(s->loading, p, p->velocity.row, 0);
+  pressing_take_up(&s->newton, &s->drag);
   find_accelerations(s);
-  s->ledger->kinetic = kinetic_energy(s->domain, p->velocity);
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
+  s->ledger->kinetic = kinetic_energy(s->domain, &p->velocity);
+  s->ledger->given = fmax(s->ledger->given, vector_largest(&p->velocity));
   return BRECCIA_OK;
 }
 
@@ -300,19 +306,16 @@ static double find_error(Implicit *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
-  double change = 0;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, s->newton.moved, k, i);
-  implicit_still_leaders(s, s->then, false, s->result);
-  unknowns_clear_rest(u, s->result);
-  unknowns_spread(u, NAN, s->result);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double d = unknowns_length(u, k) * (s->result[k][i] - s->acceleration[k][i]);
-      change += d * d;
-    }
-  const double shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
-  const double error = fabs(s->spec->beta - 1.0 / 6) * s->length * s->length * sqrt(change);
+  implicit_accelerate(s, &s->newton.moved);
+  implicit_still_leaders(s, s->then, false, &s->result);
+  unknowns_clear_rest(u, &s->result);
+  unknowns_spread(u, NAN, &s->result);
+  const Vector *change = &s->newton.change; /* of accelerations; corrections have been made */
+  vector_copy(change, &s->result);
+  vector_combine(1, change, -1, &s->acceleration);
+  const double shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, &p->displacement, &p->displacement)));
+  const double error =
+      fabs(s->spec->beta - 1.0 / 6) * s->length * s->length * sqrt(unknowns_product_of_motions(u, change, change));
   return shift > 0 ? error / shift : 0;
 }
 
@@ -326,21 +329,16 @@ static void finish_step(Implicit *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
-  double fastest = 0;
   book(s);
-  loading_settle(s->loading, p, s->newton.moved, 1);
+  loading_settle(s->loading, p, s->newton.moved.row, 1);
   find_error(s);
-  increment_accept(&s->increment, s->newton.moved);
+  increment_accept(&s->increment, &s->newton.moved);
   one_sided_accept(s->loading);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      if (k < ROTATION) fastest = fmax(fastest, fabs(s->newton.moved[k][i]) / s->length);
-      p->velocity[k][i] = s->velocity[k][i];
-      s->acceleration[k][i] = s->result[k][i];
-      s->drag[k][i] = s->drag_then[k][i];
-    }
-  s->ledger->fastest = fastest;
-  s->shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
+  s->ledger->fastest = vector_largest(&s->newton.moved) / s->length;
+  vector_copy(&p->velocity, &s->velocity);
+  vector_copy(&s->acceleration, &s->result);
+  vector_copy(&s->drag, &s->drag_then);
+  s->shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, &p->displacement, &p->displacement)));
 }
 
 /** Adds the energy that a closing entry dissipates in a plastic impact. For a platen the function also stores the
@@ -354,12 +352,13 @@ static void implicit_strike_one(void *context, const Constraint *c, int64_t entr
                rate = constraint_velocity(c, s->clock->time, dt);
   if (!c->platen) {
     const int32_t i = on->places[entry];
-    const double change = rate * constraint_part(c, entry) - constraint_along(c, p->velocity, i);
-    s->struck += 0.5 * p->inertia[c->row][i] * s->domain->counted[i] * change * change;
+    const double change = rate * constraint_part(c, entry) - constraint_along(c, p->velocity.row, i);
+    s->struck += 0.5 * p->inertia.row[c->row][i] * s->domain->counted[i] * change * change;
     return;
   }
-  const double moved = constraint_displacement(c, s->clock->time + dt) - platen_centre_displacement(c, p->displacement),
-               v = platen_centre_rate(c, p->velocity), a = platen_centre_rate(c, s->acceleration);
+  const double moved =
+                   constraint_displacement(c, s->clock->time + dt) - platen_centre_displacement(c, p->displacement.row),
+               v = platen_centre_rate(c, p->velocity.row), a = platen_centre_rate(c, s->acceleration.row);
   c->platen->closes = true;
   c->platen->acceleration = (moved / dt - v) / (beta * dt) - (1 / (2 * beta) - 1) * a;
   c->platen->velocity = gamma / (beta * dt) * moved + (1 - gamma / beta) * v + dt * (1 - gamma / (2 * beta)) * a;
@@ -399,7 +398,7 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   linear->stiffness_share = spec->damping.stiffness * rate;
   linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
   increment_begin(&s->increment);
-  loading_move(s->loading, &(LoadMotion){.velocity = s->velocity, .rate = rate});
+  loading_move(s->loading, &(LoadMotion){.velocity = s->velocity.row, .rate = rate});
   domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));
   const NewtonOutcome outcome = implicit_press(s, end, error);
   domain_mix_tangents(s->domain, 0);

@@ -1,7 +1,6 @@
 #include "solver/increment.h"
 
 #include "base/team.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -40,9 +39,11 @@ int increment_create(Increment *i, Domain *domain, const Loading *loading, Error
   i->domain = domain;
   i->apart = domain->forces.count > 0;
   const Particles *p = domain->particles;
-  bool made = vectors_make(i->internal, p, "forces", error) && vectors_make(i->external, p, "forces", error);
+  bool made = vector_create(&i->internal, &p->space, "forces", error) &&
+              vector_create(&i->external, &p->space, "forces", error);
   if (made && i->apart)
-    made = vectors_make(i->beside, p, "forces", error) && vectors_make(i->beside_now, p, "forces", error);
+    made = vector_create(&i->beside, &p->space, "forces", error) &&
+           vector_create(&i->beside_now, &p->space, "forces", error);
   return made ? face_work_create(&i->face_work, domain, loading, error) : BRECCIA_FAILURE;
 }
 
@@ -53,10 +54,10 @@ void increment_forget(Increment *i)
 
 void increment_destroy(Increment *i)
 {
-  vectors_free(i->internal);
-  vectors_free(i->external);
-  vectors_free(i->beside);
-  vectors_free(i->beside_now);
+  vector_destroy(&i->internal);
+  vector_destroy(&i->external);
+  vector_destroy(&i->beside);
+  vector_destroy(&i->beside_now);
   face_work_destroy(&i->face_work);
   if (i->domain) increment_forget(i);
 }
@@ -68,7 +69,7 @@ int increment_keep(Increment *i, Solver *run, Error *error)
 
 size_t increment_bytes(const Increment *i, Solver *run)
 {
-  return (i->beside[0] ? 4 : 2) * vectors_bytes(i->domain->particles) + face_work_bytes(&i->face_work) +
+  return (i->beside.row[0] ? 4 : 2) * vector_bytes(&i->domain->particles->space) + face_work_bytes(&i->face_work) +
          solver_kept_bytes(run, KEPT_TRIED);
 }
 
@@ -93,20 +94,6 @@ static void note_rows(void *context)
   TEAM_FOR (b, d->batch_count) state_note_places(&i->before, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
 }
 
-static void note_forces(void *context)
-{
-  Increment *i = context;
-  const Domain *d = i->domain;
-  const Particles *p = d->particles;
-  TEAM_FOR (b, d->batch_count) {
-    const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
-    for (int k = 0; k < p->motions; ++k) {
-      memcpy(i->internal[k] + first, p->internal[k] + first, sizeof(double) * (size_t)(last - first));
-      memcpy(i->external[k] + first, p->external[k] + first, sizeof(double) * (size_t)(last - first));
-    }
-  }
-}
-
 void increment_start(Increment *i)
 {
   i->apart = i->domain->forces.count > 0;
@@ -127,23 +114,23 @@ void increment_begin(Increment *i)
     forces_choose(&i->domain->forces);
     i->apart = false;
   }
-  if (i->beside[0]) {
-    domain_forces_beside(i->domain, NULL, i->beside);
+  if (i->beside.row[0]) {
+    domain_forces_beside(i->domain, NULL, &i->beside);
     i->held =
         forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - forces_given(&i->domain->forces);
   }
   face_work_renew(&i->face_work, i->domain);
   face_work_note(&i->face_work);
-  team_run(note_forces, i);
+  vector_copy(&i->internal, &i->domain->particles->internal);
+  vector_copy(&i->external, &i->domain->particles->external);
   increment_begin_again(i);
 }
 
 void increment_retreat(Increment *i)
 {
-  const Particles *p = i->domain->particles;
   state_undo(&i->before);
   domain_drop_lengths(i->domain);
-  for (int k = 0; k < p->motions; ++k) memcpy(p->external[k], i->external[k], sizeof(double) * (size_t)p->places);
+  vector_copy(&i->domain->particles->external, &i->external);
   domain_put_stresses_by(i->domain);
   domain_follow(i->domain);
 }
@@ -156,12 +143,10 @@ static void accept(void *context)
     particles_take_rotations(d->particles, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
 }
 
-void increment_accept(Increment *i, double *const moved[MOTIONS])
+void increment_accept(Increment *i, const Vector *moved)
 {
   Domain *d = i->domain;
-  double most = 0;
-  for (int k = 0; k < 3; ++k) /* bonds stretch by nothing else */
-    for (int64_t place = 0; place < d->particles->places; ++place) most = fmax(most, fabs(moved[k][place]));
+  const double most = vector_largest(moved); /* bonds stretch by nothing else */
   i->moved += most;
   i->apart = i->domain->forces.count && most > 0;
   team_run(accept, d);
@@ -169,33 +154,22 @@ void increment_accept(Increment *i, double *const moved[MOTIONS])
   forces_commit(&d->forces);
 }
 
-double increment_sudden_work(Increment *i, double *const moved[MOTIONS])
+double increment_sudden_work(Increment *i, const Vector *moved)
 {
-  const Particles *p = i->domain->particles;
-  if (!i->beside[0]) return 0;
-  domain_forces_beside(i->domain, NULL, i->beside_now);
+  if (!i->beside.row[0]) return 0;
+  domain_forces_beside(i->domain, NULL, &i->beside_now);
   double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) -
                 forces_given(&i->domain->forces) - i->held;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t place = 0; place < p->places; ++place)
-      work += 0.5 * i->domain->counted[place] * (i->beside[k][place] + i->beside_now[k][place]) * moved[k][place];
+  work += 0.5 * vector_inner_weighted(i->domain->counted, &i->beside, &i->beside_now, moved);
   return work;
 }
 
-double increment_bond_work(Increment *i, double *const moved[MOTIONS])
+double increment_bond_work(Increment *i, const Vector *moved)
 {
   const Domain *d = i->domain;
-  const Particles *p = d->particles;
-  double work = 0;
-  for (int64_t b = 0; b < d->batch_count; ++b) {
-    double part = 0;
-    for (int k = 0; k < p->motions; ++k)
-      for (int64_t place = d->batches[b].first * SLICE; place < d->batches[b].last * SLICE; ++place)
-        part -= 0.5 * d->counted[place] * (i->internal[k][place] + p->internal[k][place]) * moved[k][place];
-    work += part;
-  }
+  const double work = -0.5 * vector_inner_weighted(d->counted, &i->internal, &d->particles->internal, moved);
   face_work_renew(&i->face_work, d);
-  return work + face_work_done(&i->face_work, 1, moved);
+  return work + face_work_done(&i->face_work, 1, moved->row);
 }
 
 static void break_bonds(void *context)

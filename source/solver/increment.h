@@ -9,10 +9,11 @@ typedef struct Increment {
   Domain *domain;
   StateCopy before;
   FaceWork face_work;
-  double *internal[MOTIONS], *external[MOTIONS]; /* forces per volume of bonds and of loads at its beginning */
-  bool apart; /* parts have moved against each other since forces between them were looked for */
+  Vector internal, external; /* forces per volume of bonds and of loads at its beginning */
+  bool apart;                /* parts have moved against each other since forces between them were looked for */
   /* Of forces beside those of bonds, where there are any: at its beginning, with the energy that they held or had dissipated; and now. */
-  double *beside[MOTIONS], *beside_now[MOTIONS], held;
+  Vector beside, beside_now;
+  double held;
   double
       moved; /* sum over the increments since bonds were judged of the largest component of any displacement in each */
 } Increment;
@@ -49,14 +50,14 @@ void increment_begin_again(Increment *increment);
 void increment_retreat(Increment *increment);
 /** What laws, forces and orientations remember of the increment is so from now on.
  *  @param[in] moved  changes of displacements in it */
-void increment_accept(Increment *increment, double *const moved[MOTIONS]);
+void increment_accept(Increment *increment, const Vector *moved);
 
 /** What faces that meet within an increment have taken beyond the mean of their forces at both ends of it, when it has been accepted: they may have come
  *  a long way before they met. @param[in] moved  changes of displacements since increment_begin */
-double increment_sudden_work(Increment *increment, double *const moved[MOTIONS]);
+double increment_sudden_work(Increment *increment, const Vector *moved);
 
 /** Work on the bonds of the body along a way, by the trapezium rule of the forces at its beginning and now. */
-double increment_bond_work(Increment *increment, double *const moved[MOTIONS]);
+double increment_bond_work(Increment *increment, const Vector *moved);
 
 /** Breaks the most loaded bonds that are beyond their limit, at the displacements held, and commits what is left of the body, with its forces.
  *  @param[in] most  as in Moment

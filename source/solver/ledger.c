@@ -34,8 +34,8 @@ static int64_t fastest_place(const Particles *p, int row, int rows, double *most
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     for (int k = row; k < rows; ++k) {
-      if (fabs(p->velocity[k][i]) <= *most) continue;
-      *most = fabs(p->velocity[k][i]);
+      if (fabs(p->velocity.row[k][i]) <= *most) continue;
+      *most = fabs(p->velocity.row[k][i]);
       place = i;
     }
   }
@@ -73,13 +73,13 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, c
 {
   const Particles *p = d->particles;
   double speed, turning;
-  int64_t i = fastest_place(p, 0, ROTATION, &speed);
+  int64_t i = fastest_place(p, 0, p->space.rotation, &speed);
   char place[120], what[300], unit[32], step[120];
   describe_step(clock, step, sizeof step);
   units_name(units, dimension_find("velocity"), unit, sizeof unit);
   if (l->fast_steps > 0) speed = l->fastest; /* in the middle of the step */
-  const bool moves = speed > most_of_speed * (l->wave + l->given) || p->motions <= ROTATION;
-  if (!moves) i = fastest_place(p, ROTATION, p->motions, &turning);
+  const bool moves = speed > most_of_speed * (l->wave + l->given) || !particles_have_rotations(p);
+  if (!moves) i = fastest_place(p, p->space.rotation, p->space.rows, &turning);
   snprintf(place, sizeof place, "particle %d at [%g, %g, %g]", p->number[i], p->position[0][i], p->position[1][i],
            p->position[2][i]);
   if (moves)

@@ -1,5 +1,4 @@
 #include "solver/linear_solver.h"
-#include "solver/vectors.h"
 
 #include "base/team.h"
 #include <math.h>
@@ -95,12 +94,12 @@ int linear_solver_prepare(LinearSolver *s, Error *error)
 }
 
 /** The other way from now on, beginning with these equations. */
-static int take_instead(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-                        LinearRecord *record, Error *error)
+static int take_instead(LinearSolver *s, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+                        Error *error)
 {
   const LinearRecord before = *record;
   *record = (LinearRecord){0};
-  vectors_clear(v, s->domain->particles);
+  vector_clear(v);
   ++s->given_up;
   if (linear_solver_prepare(s, error) || s->type->solve(s, f, v, tolerance, record, error)) return BRECCIA_FAILURE;
   record->iterations += before.iterations;
@@ -108,8 +107,8 @@ static int take_instead(LinearSolver *s, double *const f[MOTIONS], double *const
   return BRECCIA_OK;
 }
 
-int linear_solver_solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-                        LinearRecord *record, Error *error)
+int linear_solver_solve(LinearSolver *s, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+                        Error *error)
 {
   *record = (LinearRecord){0};
   int status = s->left != s->given_up ? linear_solver_prepare(s, error) : BRECCIA_OK;
@@ -126,40 +125,34 @@ int linear_solver_solve(LinearSolver *s, double *const f[MOTIONS], double *const
 
 typedef struct Weighing {
   const LinearSolver *solver;
-  double *const *v, *const *kv;
+  const Vector *v, *kv;
 } Weighing;
 
 /** Changes of forces per volume to forces against them. */
 BRECCIA_CLONES
-static void weigh(const LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS], int64_t first,
-                  int64_t last)
+static void weigh_tile(void *context, int64_t first, int64_t last)
 {
-  const Particles *p = s->domain->particles;
-  const Lanes factor = lanes_set(s->mass_factor);
-  for (int k = 0; k < p->motions; ++k)
+  const Weighing *w = context;
+  const Particles *p = w->solver->domain->particles;
+  const Lanes factor = lanes_set(w->solver->mass_factor);
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = first; i < last; i += LANES) {
-      const Lanes mass = factor * lanes_load(p->inertia[k] + i);
-      lanes_store(kv[k] + i, lanes_load(p->volume + i) * (mass * lanes_load(v[k] + i) - lanes_load(kv[k] + i)));
+      const Lanes mass = factor * lanes_load(p->inertia.row[k] + i);
+      lanes_store(w->kv->row[k] + i,
+                  lanes_load(p->volume + i) * (mass * lanes_load(w->v->row[k] + i) - lanes_load(w->kv->row[k] + i)));
     }
 }
 
-static void weigh_batch(void *context, int64_t b)
-{
-  const Weighing *w = context;
-  const Batch *batch = &w->solver->domain->batches[b];
-  weigh(w->solver, w->v, w->kv, batch->first * SLICE, batch->last * SLICE);
-}
-
-void linear_solver_apply(LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
+void linear_solver_apply(LinearSolver *s, const Vector *v, const Vector *kv)
 {
   unknowns_spread(&s->unknowns, NAN, v);
   if (s->elastic)
     elastic_step_apply(s->elastic, s->domain, v, kv);
   else
     domain_linear_step(s->domain, v, kv);
-  if (s->stiffness_share != 0) vectors_combine(s->domain, 1 + s->stiffness_share, kv, 0, kv);
+  if (s->stiffness_share != 0) vector_scale(kv, 1 + s->stiffness_share);
   if (!s->elastic) domain_change_forces(s->domain, v, kv);
-  loading_change(s->loading, s->domain->particles, v, kv);
-  team_each(s->domain->batch_count, weigh_batch, &(Weighing){s, v, kv});
+  loading_change(s->loading, s->domain->particles, v->row, kv->row);
+  vector_each_tile(v->space, weigh_tile, &(Weighing){s, v, kv});
   unknowns_gather(&s->unknowns, kv);
 }

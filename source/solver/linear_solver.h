@@ -36,8 +36,8 @@ struct LinearType {
   /** The domain was linearised again. */
   int (*prepare)(LinearSolver *solver, Error *error);
   /** @param[in] f  forces, a vector of unknowns; @param[out] v  a vector of unknowns; 0 before; @param[in] tolerance  of the residual over f */
-  int (*solve)(LinearSolver *solver, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-               LinearRecord *record, Error *error);
+  int (*solve)(LinearSolver *solver, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+               Error *error);
   size_t (*bytes)(const LinearSolver *solver);
   /** What it will take, where trying that would take as long. NULL: not long. */
   LinearForesight (*foresee)(const LinearSolver *solver);
@@ -79,8 +79,8 @@ const char *linear_refusal(int word, const Unknowns *unknowns);
 int linear_solver_create(LinearSolver *solver, int word, Error *error);
 void linear_solver_destroy(LinearSolver *solver);
 int linear_solver_prepare(LinearSolver *solver, Error *error);
-int linear_solver_solve(LinearSolver *solver, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
-                        LinearRecord *record, Error *error);
+int linear_solver_solve(LinearSolver *solver, const Vector *f, const Vector *v, double tolerance, LinearRecord *record,
+                        Error *error);
 
 /** Rows of what a solution to come depends on: which way is taken. */
 void linear_solver_state(LinearSolver *solver, StateList *list);
@@ -88,7 +88,7 @@ void linear_solver_state(LinearSolver *solver, StateList *list);
 /** Forces K v, with loads that follow displacements and the mass factor, on the unknowns.
  *  @param[in,out] v  a change of displacements: what is not free is made to follow, without motions that are prescribed
  *  @param[out] kv    a vector of unknowns */
-void linear_solver_apply(LinearSolver *solver, double *const v[MOTIONS], double *const kv[MOTIONS]);
+void linear_solver_apply(LinearSolver *solver, const Vector *v, const Vector *kv);
 
 /** What the way that is taken needs. */
 LinearForesight linear_solver_foresee(const LinearSolver *solver);

@@ -56,7 +56,7 @@ static int find_point(const Source *source, const Unknowns *u, int64_t number, O
 {
   if (source->forces) return source->forces->point(source->own, number, point, error);
   if (source->load) return source->load->type->point(source->load, u->domain->particles, number, point, error);
-  return source->region->type->point(source->region->formulation, u->domain->linearised_at, number, point, error);
+  return source->region->type->point(source->region->formulation, u->domain->linearised_at->row, number, point, error);
 }
 
 static int64_t count_points(const Unknowns *u)
@@ -198,7 +198,7 @@ int matrix_create(Matrix *m, const Unknowns *u, Error *error)
 {
   const int64_t places = m->places = u->domain->particles->places, points = count_points(u);
   Rows rows = {.matrix = m};
-  m->motions = u->domain->particles->motions;
+  m->motions = u->domain->particles->space.rows;
   m->follow = follow_create(u, &m->size, error);
   m->leader = m->follow ? follow_leaders(m->follow, m->motions, places, m->size, error) : NULL;
   int status = m->leader ? BRECCIA_OK : BRECCIA_FAILURE;
@@ -323,14 +323,14 @@ static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Err
     for (int64_t n = 0; n < source.count && !status; ++n) {
       const double factor = source.region ? 1 + stiffness_share : 1;
       status = find_point(&source, u, n, &point, error);
-      if (!status) join_places(m, &point, u->domain->linearised_at);
+      if (!status) join_places(m, &point, u->domain->linearised_at->row);
       const int count = point.count, size = point.motions, wanted = count * size;
       if (!status && wanted > room) {
         room = 2 * wanted;
         free(k);
         if (!(k = memory_zeroed((size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
       }
-      if (!status) status = operator_matrix(&point, u->domain->linearised_at, k, error);
+      if (!status) status = operator_matrix(&point, u->domain->linearised_at->row, k, error);
       for (int a = 0; a < count && !status; ++a)
         for (int b = 0; b < count; ++b)
           add_block(m, point.places[a].place, point.places[b].place, k + (int64_t)size * size * (count * a + b), size,
@@ -348,9 +348,10 @@ int matrix_fill(Matrix *m, const Unknowns *u, double stiffness_share, double mas
   const int status = fill_points(m, u, stiffness_share, error);
   for (int64_t n = 0; n < p->count && !status && mass_factor != 0; ++n) {
     const int32_t i = p->place_of[n];
-    double mass[MOTIONS * MOTIONS] = {0};
-    for (int k = 0; k < p->motions; ++k) mass[(p->motions + 1) * k] = mass_factor * p->inertia[k][i] * p->volume[i];
-    add_block(m, i, i, mass, p->motions, 1);
+    double mass[MAX_ROWS * MAX_ROWS] = {0};
+    for (int k = 0; k < p->space.rows; ++k)
+      mass[(p->space.rows + 1) * k] = mass_factor * p->inertia.row[k][i] * p->volume[i];
+    add_block(m, i, i, mass, p->space.rows, 1);
   }
   return status;
 }
@@ -368,18 +369,18 @@ double matrix_asymmetry(const Matrix *m)
 
 /* ---- vectors ---- */
 
-void matrix_pack(const Matrix *m, const Unknowns *u, double *const v[MOTIONS], double *x)
+void matrix_pack(const Matrix *m, const Unknowns *u, const Vector *v, double *x)
 {
   memset(x, 0, sizeof *x * (size_t)m->size);
   for (int64_t i = 0; i < u->domain->particles->places; ++i)
     for (int k = 0; k < m->motions; ++k) {
       const Follow *follow = &m->follow[m->motions * i + k];
       for (int t = 0; t < follow->own; ++t)
-        x[follow_terms(follow)[t].unknown] += follow_terms(follow)[t].factor * v[k][i];
+        x[follow_terms(follow)[t].unknown] += follow_terms(follow)[t].factor * v->row[k][i];
     }
 }
 
-void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, double *const v[MOTIONS])
+void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, const Vector *v)
 {
   for (int64_t i = 0; i < u->domain->particles->places; ++i)
     for (int k = 0; k < m->motions; ++k) {
@@ -387,7 +388,7 @@ void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, double *
       double sum = 0;
       for (int t = 0; t < follow->count; ++t)
         sum += follow_terms(follow)[t].factor * x[follow_terms(follow)[t].unknown];
-      v[k][i] = sum;
+      v->row[k][i] = sum;
     }
   unknowns_clear_rest(u, v);
 }

@@ -32,7 +32,7 @@ int matrix_fill(Matrix *matrix, const Unknowns *unknowns, double stiffness_share
 double matrix_asymmetry(const Matrix *matrix);
 
 /** Between vectors of unknowns and columns of numbers. */
-void matrix_pack(const Matrix *matrix, const Unknowns *unknowns, double *const v[MOTIONS], double *x);
-void matrix_unpack(const Matrix *matrix, const Unknowns *unknowns, const double *x, double *const v[MOTIONS]);
+void matrix_pack(const Matrix *matrix, const Unknowns *unknowns, const Vector *v, double *x);
+void matrix_unpack(const Matrix *matrix, const Unknowns *unknowns, const double *x, const Vector *v);
 
 #endif

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "solver/ledger.h"
-#include "solver/vectors.h"
 #include <arpack.h>
 #include <math.h>
 #include <pthread.h>
@@ -29,9 +28,9 @@ typedef struct Search {
   Domain *domain;
   LinearSolver linear;
   int wanted, basis;
-  int row[MOTIONS], rows; /* of motion, that the body has */
-  a_int size;             /* of a column of numbers: those rows of all particles */
-  double *from[MOTIONS], *to[MOTIONS];
+  int row[MAX_ROWS], rows; /* of motion, that the body has */
+  a_int size;              /* of a column of numbers: those rows of all particles */
+  Vector from, to;
   double *start, *columns, *work, *projected;
   double *values, *imaginary; /* of omega squared; of two that are complex the columns are the vector's two parts */
   a_int *chosen;
@@ -44,30 +43,29 @@ typedef struct Search {
 
 /* ---- columns and vectors ---- */
 
-static void pack(const Search *s, double *const v[MOTIONS], double *column)
+static void pack(const Search *s, const Vector *v, double *column)
 {
   const Particles *p = s->domain->particles;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < s->rows; ++k) column[n * s->rows + k] = v[s->row[k]][p->place_of[n]];
+    for (int k = 0; k < s->rows; ++k) column[n * s->rows + k] = v->row[s->row[k]][p->place_of[n]];
 }
 
-static void unpack(const Search *s, const double *column, double *const v[MOTIONS])
+static void unpack(const Search *s, const double *column, const Vector *v)
 {
   const Particles *p = s->domain->particles;
-  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)p->places);
+  vector_clear(v);
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < s->rows; ++k) v[s->row[k]][p->place_of[n]] = column[n * s->rows + k];
+    for (int k = 0; k < s->rows; ++k) v->row[s->row[k]][p->place_of[n]] = column[n * s->rows + k];
 }
 
 static void multiply_masses(const Search *s, const double *column, double *product)
 {
   const Particles *p = s->domain->particles;
-  unpack(s, column, s->from);
-  unknowns_spread(&s->linear.unknowns, NAN, s->from);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->from[k][i] *= p->inertia[k][i] * p->volume[i];
-  unknowns_gather(&s->linear.unknowns, s->from);
-  pack(s, s->from, product);
+  unpack(s, column, &s->from);
+  unknowns_spread(&s->linear.unknowns, NAN, &s->from);
+  vector_weigh_product(&s->from, p->volume, &p->inertia, &s->from);
+  unknowns_gather(&s->linear.unknowns, &s->from);
+  pack(s, &s->from, product);
 }
 
 static double dot(const Search *s, const double *a, const double *b)
@@ -101,24 +99,25 @@ static int solve(Search *s, const double *column, double *answer, Error *error)
   /* Iterations may not come as far as the first; beyond the second nothing can be found. */
   const double accuracy = 1e-11, enough = 1e-6;
   LinearRecord record;
-  unpack(s, column, s->from);
-  vectors_clear(s->to, s->domain->particles);
-  if (linear_solver_solve(&s->linear, s->from, s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
+  unpack(s, column, &s->from);
+  vector_clear(&s->to);
+  if (linear_solver_solve(&s->linear, &s->from, &s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
   if (!(record.residual <= enough)) return say_inexact(record.residual, error);
-  unknowns_clear_rest(&s->linear.unknowns, s->to);
-  pack(s, s->to, answer);
+  unknowns_clear_rest(&s->linear.unknowns, &s->to);
+  pack(s, &s->to, answer);
   take_known_out(s, answer);
   return BRECCIA_OK;
 }
 
 /* ---- iteration ---- */
 
-static void fill_at_random(const Search *s, uint64_t seed, double *const v[MOTIONS])
+static void fill_at_random(const Search *s, uint64_t seed, const Vector *v)
 {
   const Particles *p = s->domain->particles;
   for (int k = 0; k < s->rows; ++k)
     for (int64_t n = 0; n < p->count; ++n)
-      v[s->row[k]][p->place_of[n]] = (random_uniform(&seed) - 0.5) / unknowns_length(&s->linear.unknowns, s->row[k]);
+      v->row[s->row[k]][p->place_of[n]] =
+          (random_uniform(&seed) - 0.5) / unknowns_length(&s->linear.unknowns, s->row[k]);
   unknowns_clear_rest(&s->linear.unknowns, v);
 }
 
@@ -128,21 +127,21 @@ static int find_symmetry(Search *s, Error *error)
   const double roundings = 1e-11; /* images at one face of a body of 1e8 particles make more */
   const Unknowns *u = &s->linear.unknowns;
   const Particles *p = s->domain->particles;
-  double *a[MOTIONS] = {0}, *b[MOTIONS] = {0};
+  Vector a = {0}, b = {0};
   int status = BRECCIA_FAILURE;
-  if (vectors_make(a, p, "modes", error) && vectors_make(b, p, "modes", error)) {
-    fill_at_random(s, 2, a);
-    fill_at_random(s, 3, b);
-    linear_solver_apply(&s->linear, a, s->to);
-    unknowns_clear_rest(u, a); /* what follows the unknowns was set */
-    const double size = sqrt(unknowns_product_of_forces(u, s->to, s->to) * unknowns_product_of_motions(u, b, b)),
-                 one = unknowns_work(u, s->to, b);
-    linear_solver_apply(&s->linear, b, s->to);
-    s->symmetric = fabs(one - unknowns_work(u, s->to, a)) <= roundings * size;
+  if (vector_create(&a, &p->space, "modes", error) && vector_create(&b, &p->space, "modes", error)) {
+    fill_at_random(s, 2, &a);
+    fill_at_random(s, 3, &b);
+    linear_solver_apply(&s->linear, &a, &s->to);
+    unknowns_clear_rest(u, &a); /* what follows the unknowns was set */
+    const double size = sqrt(unknowns_product_of_forces(u, &s->to, &s->to) * unknowns_product_of_motions(u, &b, &b)),
+                 one = vector_inner(&s->to, &b, 1);
+    linear_solver_apply(&s->linear, &b, &s->to);
+    s->symmetric = fabs(one - vector_inner(&s->to, &a, 1)) <= roundings * size;
     status = BRECCIA_OK;
   }
-  vectors_free(a);
-  vectors_free(b);
+  vector_destroy(&a);
+  vector_destroy(&b);
   return status;
 }
 
@@ -167,7 +166,8 @@ static int create(Search *s, int64_t unknowns, Error *error)
   const Particles *p = s->domain->particles;
   const bool made = s->start && s->columns && s->work && s->projected && s->values && s->imaginary && s->chosen &&
                     s->known && s->known_masses && s->look.columns && s->look.values && s->look.imaginary &&
-                    vectors_make(s->from, p, "modes", error) && vectors_make(s->to, p, "modes", error);
+                    vector_create(&s->from, &p->space, "modes", error) &&
+                    vector_create(&s->to, &p->space, "modes", error);
   if (!made) return BRECCIA_FAILURE;
   return BRECCIA_OK;
 }
@@ -175,8 +175,8 @@ static int create(Search *s, int64_t unknowns, Error *error)
 static void destroy(Search *s)
 {
   linear_solver_destroy(&s->linear);
-  vectors_free(s->from);
-  vectors_free(s->to);
+  vector_destroy(&s->from);
+  vector_destroy(&s->to);
   free(s->start);
   free(s->columns);
   free(s->work);
@@ -198,8 +198,8 @@ static int iterate(Search *s, double shift, uint64_t seed, Error *error)
   const double accuracy = 1e-10;
   a_int what = 0, status = 1, parameters[11] = {EXACT_SHIFTS, 0, MOST_RESTARTS, 1, 0, 0, SHIFT_INVERT}, at[14] = {0};
   const a_int room = 3 * s->basis * (s->basis + 3);
-  fill_at_random(s, seed, s->from);
-  pack(s, s->from, s->start);
+  fill_at_random(s, seed, &s->from);
+  pack(s, &s->from, s->start);
   take_known_out(s, s->start);
   do {
     (s->symmetric ? dsaupd_c : dnaupd_c)(&what, "G", s->size, "LM", s->wanted, accuracy, s->start, s->basis, s->columns,
@@ -332,9 +332,9 @@ static double find_residual(Search *s, const double *column, double square)
 {
   const double shifted = square + s->linear.mass_factor;
   double *forces = s->work, *masses = s->work + s->size, left = 0, whole = 0;
-  unpack(s, column, s->from);
-  linear_solver_apply(&s->linear, s->from, s->to);
-  pack(s, s->to, forces);
+  unpack(s, column, &s->from);
+  linear_solver_apply(&s->linear, &s->from, &s->to);
+  pack(s, &s->to, forces);
   multiply_masses(s, column, masses);
   for (a_int k = 0; k < s->size; ++k) {
     const double length = unknowns_length(&s->linear.unknowns, s->row[k % s->rows]);
@@ -352,8 +352,8 @@ static double mass_product(const Search *s, const Mode *a, const Mode *b)
   for (int64_t n = 0; n < p->count; ++n) {
     if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
-    for (int k = 0; k < p->motions; ++k)
-      sum += p->inertia[k][i] * p->volume[i] * a->displacement[k][i] * b->displacement[k][i];
+    for (int k = 0; k < p->space.rows; ++k)
+      sum += p->inertia.row[k][i] * p->volume[i] * a->displacement.row[k][i] * b->displacement.row[k][i];
   }
   return sum;
 }
@@ -367,7 +367,7 @@ static void part_from_equals(const Search *s, double square, const double *squar
     if (fabs(square - squares[m]) > equal * (fabs(square) + s->linear.mass_factor)) continue;
     const double part =
         mass_product(s, &modes->modes[n], &modes->modes[m]) / mass_product(s, &modes->modes[m], &modes->modes[m]);
-    vectors_combine(s->domain, 1, modes->modes[n].displacement, -part, modes->modes[m].displacement);
+    vector_combine(1, &modes->modes[n].displacement, -part, &modes->modes[m].displacement);
   }
 }
 
@@ -380,23 +380,22 @@ static void finish_mode(const Search *s, Mode *mode)
     if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
     mass += p->density[i] * p->volume[i];
-    for (int k = 0; k < p->motions; ++k) {
-      const double v = mode->displacement[k][i], u = unknowns_length(&s->linear.unknowns, k) * v;
-      if (k < ROTATION) moved[k] += p->density[i] * p->volume[i] * v;
-      squares += p->inertia[k][i] * p->volume[i] * v * v;
+    for (int k = 0; k < p->space.rows; ++k) {
+      const double v = mode->displacement.row[k][i], u = unknowns_length(&s->linear.unknowns, k) * v;
+      if (k < p->space.rotation) moved[k] += p->density[i] * p->volume[i] * v;
+      squares += p->inertia.row[k][i] * p->volume[i] * v * v;
       if (fabs(u) > (1 + 1e-6) * fabs(largest)) largest = u; /* of equal ones the first, whatever their roundings */
     }
   }
   for (int k = 0; k < 3; ++k) mode->share[k] = squares > 0 ? moved[k] * moved[k] / (mass * squares) : 0;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places && largest != 0; ++i) mode->displacement[k][i] /= largest;
+  if (largest != 0) vector_scale(&mode->displacement, 1 / largest);
 }
 
 static int take_mode(const Search *s, int from, Mode *mode, Error *error)
 {
-  if (!vectors_make(mode->displacement, s->domain->particles, "modes", error)) return BRECCIA_FAILURE;
-  unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
-  unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
+  if (!vector_create(&mode->displacement, &s->domain->particles->space, "modes", error)) return BRECCIA_FAILURE;
+  unpack(s, s->columns + (size_t)s->size * (size_t)from, &mode->displacement);
+  unknowns_spread(&s->linear.unknowns, NAN, &mode->displacement);
   return BRECCIA_OK;
 }
 
@@ -443,7 +442,7 @@ static int take_modes(Search *s, double *squares, Modes *modes, Error *error)
 
 void modes_destroy(Modes *modes)
 {
-  for (int n = 0; n < modes->count; ++n) vectors_free(modes->modes[n].displacement);
+  for (int n = 0; n < modes->count; ++n) vector_destroy(&modes->modes[n].displacement);
   free(modes->modes);
   *modes = (Modes){0};
 }
@@ -469,7 +468,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   Search s = {.domain = d,
               .wanted = count,
               .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};
-  for (int k = 0; k < d->particles->motions; ++k)
+  for (int k = 0; k < d->particles->space.rows; ++k)
     if (body_moves_along(&d->body, k)) s.row[s.rows++] = k;
   const double size = (double)s.rows * (double)d->particles->count;
   s.size = (a_int)size;

@@ -6,10 +6,9 @@
 #include "solver/linear_solver.h"
 
 typedef struct Mode {
-  double frequency; /* cycles per time; 0: the body moves as a whole */
-  double share[3];  /* of the mass that moves with a motion of the ground along each axis */
-  double
-      *displacement[MOTIONS]; /* arrays of places; the largest component is 1, of rotations at the radius of gyration */
+  double frequency;    /* cycles per time; 0: the body moves as a whole */
+  double share[3];     /* of the mass that moves with a motion of the ground along each axis */
+  Vector displacement; /* arrays of places; the largest component is 1, of rotations at the radius of gyration */
 } Mode;
 
 typedef struct Modes {

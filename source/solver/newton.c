@@ -1,7 +1,6 @@
 #include "solver/newton_parts.h"
 #include "solver/newton_stability.h"
 #include "solver/pieces.h"
-#include "solver/vectors.h"
 
 #include "base/team.h"
 #include "loading/one_sided.h"
@@ -13,9 +12,8 @@
 void newton_note_forces_held(Newton *n)
 {
   const Particles *p = n->domain->particles;
-  double sum = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) sum += p->volume[i] * p->internal[k][i] * p->volume[i] * p->internal[k][i];
+  vector_weigh(&n->force, p->volume, &p->internal);
+  const double sum = vector_inner(&n->force, &n->force, 0);
   if (isfinite(sum)) n->reference = fmax(n->reference, sqrt(sum));
 }
 
@@ -40,11 +38,12 @@ int newton_create(Newton *n, Error *error)
   n->linear.domain = n->domain;
   n->linear.loading = n->loading;
   n->linear.unknowns = unknowns_of(n->domain, n->loading);
-  bool made = vectors_make(n->force, p, "forces out of balance", error) &&
-              vectors_make(n->change, p, "corrections", error) && vectors_make(n->moved, p, "increments", error);
+  bool made = vector_create(&n->force, &p->space, "forces out of balance", error) &&
+              vector_create(&n->change, &p->space, "corrections", error) &&
+              vector_create(&n->moved, &p->space, "increments", error);
   if (made && n->control)
-    made = vectors_make(n->unit_force, p, "controlled loads", error) &&
-           vectors_make(n->unit_motion, p, "controlled loads", error);
+    made = vector_create(&n->unit_force, &p->space, "controlled loads", error) &&
+           vector_create(&n->unit_motion, &p->space, "controlled loads", error);
   if (!made) return BRECCIA_FAILURE;
   if (n->domain->begins_under_stress) newton_note_forces_held(n);
   n->stiffness = stiffness_of(n->domain);
@@ -53,12 +52,12 @@ int newton_create(Newton *n, Error *error)
 
 void newton_destroy(Newton *n)
 {
-  vectors_free(n->force);
-  vectors_free(n->change);
-  vectors_free(n->moved);
-  vectors_free(n->unit_force);
-  vectors_free(n->unit_motion);
-  vectors_free(n->change_forces);
+  vector_destroy(&n->force);
+  vector_destroy(&n->change);
+  vector_destroy(&n->moved);
+  vector_destroy(&n->unit_force);
+  vector_destroy(&n->unit_motion);
+  vector_destroy(&n->change_forces);
   linear_solver_destroy(&n->linear);
 }
 
@@ -84,18 +83,16 @@ static void find_roundings(Newton *n)
 {
   const Particles *p = n->domain->particles;
   const double digits = 16 * DBL_EPSILON;
-  double most = 0, displaced = 0, inertia = 0;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double length = unknowns_length(&n->linear.unknowns, k), u = length * p->displacement[k][i],
-                   mass = p->inertia[k][i] * p->volume[i] * n->moved[k][i] / length;
-      most = fmax(most, fabs(u));
-      displaced += u * u;
-      inertia += mass * mass;
-    }
-  inertia = n->linear.mass_factor > 0 ? n->linear.mass_factor * sqrt(inertia) : 0;
+  const Unknowns *of = &n->linear.unknowns;
+  const Vector *u = &p->displacement;
+  const double most = fmax(vector_largest(u), of->length * vector_largest_rotation(u));
+  double inertia = 0;
+  if (n->linear.mass_factor > 0) {
+    vector_weigh_product(&n->force, p->volume, &p->inertia, &n->moved);
+    inertia = n->linear.mass_factor * newton_size_of_forces(n, &n->force);
+  }
   n->roundings = digits * (n->stiffness * most + inertia);
-  n->rounding_work = n->roundings * sqrt(displaced);
+  n->rounding_work = n->roundings * newton_size_of_motions(n, u);
 }
 
 int newton_linearise(const Newton *n, Error *error)
@@ -111,7 +108,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   Domain *d = n->domain;
   const Particles *p = d->particles;
   if (newton_is_interrupted(n)) return NEWTON_STOPPED;
-  if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
+  if (n->beside && n->beside->prepare(n->beside->context, &n->moved, time, error)) return NEWTON_FAILED;
   if (n->relaxes)
     domain_evaluate(d, NULL);
   else if (newton_linearise(n, error))
@@ -123,19 +120,15 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   if (d->failed_place >= 0) return NEWTON_LAW;
   if (!isfinite(d->force_sum)) return NEWTON_DIVERGED;
   newton_apply_loads(n, time);
-  double exerted = 0;
   find_roundings(n);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double external = p->volume[i] * p->external[k][i] / unknowns_length(&n->linear.unknowns, k);
-      n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
-      exerted += external * external;
-    }
-  if (n->beside) exerted = fmax(exerted, n->beside->add(n->beside->context, n->moved, n->force));
-  one_sided_find(n->loading, n->force);
-  const double all = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
-  unknowns_gather(&n->linear.unknowns, n->force);
-  const double free = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
+  vector_weigh(&n->force, p->volume, &p->external);
+  double exerted = unknowns_product_of_forces(&n->linear.unknowns, &n->force, &n->force);
+  vector_weigh_sum(&n->force, p->volume, &p->internal, &p->external);
+  if (n->beside) exerted = fmax(exerted, n->beside->add(n->beside->context, &n->moved, &n->force));
+  one_sided_find(n->loading, &n->force);
+  const double all = unknowns_product_of_forces(&n->linear.unknowns, &n->force, &n->force);
+  unknowns_gather(&n->linear.unknowns, &n->force);
+  const double free = unknowns_product_of_forces(&n->linear.unknowns, &n->force, &n->force);
   if (d->strains.any && !n->iterations && isfinite(free))
     n->reference = fmax(n->reference, sqrt(free)); /* of strains */
   n->exerted = fmax(n->reference, sqrt(fmax(exerted, all - free)));
@@ -149,7 +142,7 @@ NewtonOutcome newton_take_lengths(Newton *n, double time, bool *again, Error *er
   if (!points) return NEWTON_CONVERGED;
   const NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const double force = newton_size_of_forces(n, n->force);
+  const double force = newton_size_of_forces(n, &n->force);
   n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
   *again = !newton_is_balanced(n, force);
   if (*again && n->log)
@@ -162,18 +155,16 @@ bool newton_add_motions(Newton *n, double time)
 {
   const Particles *p = n->domain->particles;
   const Unknowns *u = &n->linear.unknowns;
-  vectors_clear(n->change, p);
-  unknowns_spread(u, time, n->change);
-  if (unknowns_product_of_motions(u, n->change, n->change) == 0) return false;
+  vector_clear(&n->change);
+  unknowns_spread(u, time, &n->change);
+  if (unknowns_product_of_motions(u, &n->change, &n->change) == 0) return false;
   /* Forces before they are gathered: those of the motions belong to the same sum. */
-  domain_linear_step(n->domain, n->change, n->moved);
-  domain_change_forces(n->domain, n->change, n->moved);
-  loading_change(n->loading, p, n->change, n->moved);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) n->moved[k][i] *= p->volume[i];
-  unknowns_gather(u, n->moved);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) n->force[k][i] += n->moved[k][i];
+  domain_linear_step(n->domain, &n->change, &n->moved);
+  domain_change_forces(n->domain, &n->change, &n->moved);
+  loading_change(n->loading, p, n->change.row, n->moved.row);
+  vector_weigh(&n->moved, p->volume, &n->moved);
+  unknowns_gather(u, &n->moved);
+  vector_combine(1, &n->force, 1, &n->moved);
   return true;
 }
 
@@ -202,7 +193,7 @@ int newton_prepare(Newton *n, Error *error)
 {
   LinearSolver *l = &n->linear;
   const Domain *d = n->domain;
-  vectors_clear(n->change, d->particles);
+  vector_clear(&n->change);
   if (!keeps_factors(n)) {
     n->factored = false;
     return linear_solver_prepare(l, error);
@@ -221,7 +212,7 @@ int newton_prepare(Newton *n, Error *error)
   }
   l->stiffness_share = n->factored_share;
   l->mass_factor = n->factored_mass;
-  int status = domain_linearise(n->domain, n->change, error); /* at zero displacements */
+  int status = domain_linearise(n->domain, &n->change, error); /* at zero displacements */
   if (!status) status = linear_solver_prepare(l, error);
   l->stiffness_share = share;
   l->mass_factor = mass;
@@ -232,12 +223,8 @@ int newton_prepare(Newton *n, Error *error)
 
 void newton_move(Newton *n, double share)
 {
-  const Particles *p = n->domain->particles;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      p->displacement[k][i] += share * n->change[k][i];
-      n->moved[k][i] += share * n->change[k][i];
-    }
+  vector_combine(1, &n->domain->particles->displacement, share, &n->change);
+  vector_combine(1, &n->moved, share, &n->change);
   if (n->control) control_add(n->loading, share * n->factor_change);
 }
 
@@ -261,12 +248,12 @@ void newton_tell(const Newton *n, double correction, double work, double share, 
   text_add(n->log, "\n");
 }
 
-double newton_size_of_forces(const Newton *n, double *const f[MOTIONS])
+double newton_size_of_forces(const Newton *n, const Vector *f)
 {
   return sqrt(unknowns_product_of_forces(&n->linear.unknowns, f, f));
 }
 
-double newton_size_of_motions(const Newton *n, double *const v[MOTIONS])
+double newton_size_of_motions(const Newton *n, const Vector *v)
 {
   return sqrt(unknowns_product_of_motions(&n->linear.unknowns, v, v));
 }
@@ -280,7 +267,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
   enum { MOST = 6 };
   const double enough = 0.8;
   NewtonOutcome outcome = newton_find_forces(n, time, error);
-  *work = unknowns_work(&n->linear.unknowns, n->force, n->change);
+  *work = vector_inner(&n->force, &n->change, 1);
   for (int k = 0; k < MOST && !whole; ++k) {
     const bool bad = outcome == NEWTON_LAW || outcome == NEWTON_DIVERGED;
     if (outcome == NEWTON_FAILED || (!bad && fabs(*work) <= enough * fabs(first_work))) break;
@@ -290,7 +277,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
     newton_move(n, wanted - *share);
     *share = wanted;
     outcome = newton_find_forces(n, time, error);
-    *work = unknowns_work(&n->linear.unknowns, n->force, n->change);
+    *work = vector_inner(&n->force, &n->change, 1);
   }
   return outcome;
 }
@@ -298,7 +285,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
 bool newton_has_gone_far(const Newton *n)
 {
   const double room = forces_room(&n->domain->forces);
-  return isfinite(room) && vectors_apart(n->domain->particles, n->moved) > room;
+  return isfinite(room) && vector_spread(&n->moved, n->domain->particles->number) > room;
 }
 
 bool newton_is_balanced(const Newton *n, double force)
@@ -320,28 +307,20 @@ bool newton_is_carried_away(const Domain *d)
 {
   const double most = 1e3; /* sizes of the body */
   const Particles *p = d->particles;
-  double low[3], high[3], size = d->body.largest_spacing, farthest = 0; /* a body may be one particle */
+  double low[3], high[3], size = d->body.largest_spacing; /* a body may be one particle */
   particles_bounds(p, low, high);
-  for (int k = 0; k < 3; ++k) {
-    size = fmax(size, high[k] - low[k]);
-    for (int64_t i = 0; i < p->places; ++i) farthest = fmax(farthest, fabs(p->displacement[k][i]));
-  }
-  return farthest > most * size;
+  for (int k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
+  return vector_largest(&p->displacement) > most * size;
 }
 
 /** Work on bonds along the first change of an increment, by the forces at its beginning and tangents; 0 where the body already softens along it, or
  *  does not resist some change. */
 static double foresee_work(const Newton *n)
 {
-  const Particles *p = n->domain->particles;
   const double *counted = n->domain->counted;
-  double now = 0, more = 0;
-  domain_linear_step(n->domain, n->change, n->change_forces);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      now -= counted[i] * p->internal[k][i] * n->change[k][i];
-      more -= counted[i] * n->change_forces[k][i] * n->change[k][i];
-    }
+  domain_linear_step(n->domain, &n->change, &n->change_forces);
+  const double now = -vector_inner_weighted(counted, &n->domain->particles->internal, NULL, &n->change),
+               more = -vector_inner_weighted(counted, &n->change_forces, NULL, &n->change);
   return more > 0 && !n->indefinite ? now + 0.5 * more : 0;
 }
 
@@ -367,9 +346,9 @@ static int find_change(Newton *n, double force, double accuracy, LinearRecord *l
   const double trace = 1e-8;
   for (bool again = false;; again = true) {
     if (newton_prepare(n, error)) return BRECCIA_FAILURE;
-    if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, linear, error))
+    if (force > 0 && linear_solver_solve(&n->linear, &n->force, &n->change, accuracy, linear, error))
       return BRECCIA_FAILURE;
-    *start = unknowns_work(&n->linear.unknowns, n->force, n->change);
+    *start = vector_inner(&n->force, &n->change, 1);
     if (isfinite(*start) || again || n->beside || !domain_may_soften(n->domain)) return BRECCIA_OK;
     domain_mix_tangents(n->domain, trace);
     if (newton_linearise(n, error)) return BRECCIA_FAILURE;
@@ -389,18 +368,17 @@ static bool is_astray(const Newton *n, double energy, double way)
 
 static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
-  const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
   n->foreseen = 0;
   n->indefinite = false;
-  vectors_clear(n->moved, p);
+  vector_clear(&n->moved);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = newton_add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0, first_way = 0;
-  vectors_clear(n->moved, p);
-  double force = newton_size_of_forces(n, n->force);
+  vector_clear(&n->moved);
+  double force = newton_size_of_forces(n, &n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
   if (!moves && newton_is_balanced(n, force)) {
     n->unbalanced = n->unbalanced_before;
@@ -432,18 +410,18 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (linear.stopped) return NEWTON_LEFT;
     if (n->wants_stable && linear.indefinite) return NEWTON_UNSTABLE;
     if (!isfinite(start)) return NEWTON_SINGULAR;
-    unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
+    unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, &n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
-    if (n->change_forces[0] && n->iterations == 1) n->foreseen = foresee_work(n);
+    if (n->change_forces.row[0] && n->iterations == 1) n->foreseen = foresee_work(n);
     double share = 1, work;
     newton_move(n, 1);
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
-    force = newton_size_of_forces(n, n->force);
+    force = newton_size_of_forces(n, &n->force);
     n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
-    const double all = newton_size_of_motions(n, n->moved),
-                 correction = all > 0 ? share * newton_size_of_motions(n, n->change) / all : 0;
+    const double all = newton_size_of_motions(n, &n->moved),
+                 correction = all > 0 ? share * newton_size_of_motions(n, &n->change) / all : 0;
     if (n->iterations == 1) {
       first_work = start;
       first_way = all;
@@ -455,7 +433,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
       outcome = newton_take_lengths(n, time, &again, error);
       if (outcome != NEWTON_CONVERGED) return outcome;
       if (again) { /* continue with the pace of the beginning of an increment */
-        force = newton_size_of_forces(n, n->force);
+        force = newton_size_of_forces(n, &n->force);
         pace.least = INFINITY;
         pace.since = 0;
         before = 0;

@@ -71,10 +71,10 @@ typedef struct NewtonForces {
   void *context;
   /** Before forces of bonds are found at the displacements held, for what needs linearised steps of its own.
    *  @param[in] moved  changes of displacements since the increment began; @param[in] time  at its end */
-  int (*prepare)(void *context, double *const moved[MOTIONS], double time, Error *error);
+  int (*prepare)(void *context, const Vector *moved, double time, Error *error);
   /** Adds the forces on all places.
    *  @return the square of the size of forces beside which those out of balance are small, if these are more than loads and reactions */
-  double (*add)(void *context, double *const moved[MOTIONS], double *const force[MOTIONS]);
+  double (*add)(void *context, const Vector *moved, const Vector *force);
 } NewtonForces;
 
 typedef struct Newton {
@@ -90,18 +90,17 @@ typedef struct Newton {
   const volatile int *interrupted; /* non-zero: what is under way ends at once; NULL: it never is */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
-  Control *control;        /* NULL: all factors of loads are given */
-  double target;           /* what it is to be at the end of the increment */
-  double *force[MOTIONS];  /* out of balance, on the unknowns */
-  double *change[MOTIONS]; /* of displacements in an iteration */
-  double *moved[MOTIONS];  /* in all iterations of an increment */
+  Control *control; /* NULL: all factors of loads are given */
+  double target;    /* what it is to be at the end of the increment */
+  Vector force;     /* out of balance, on the unknowns */
+  Vector change;    /* of displacements in an iteration */
+  Vector moved;     /* in all iterations of an increment */
   /* With control only: */
-  double factor_change; /* of controlled loads, in an iteration */
-  double *unit_force[MOTIONS],
-      *unit_motion[MOTIONS]; /* where that factor grows by 1: forces, and displacements from them */
-  double reference;          /* the most that has acted in the stage so far, bonds at its begin among it */
-  double exerted;            /* the same, or what they exert now if that is more */
-  double stiffness;          /* of the body at first, by which displacements make roundings of forces */
+  double factor_change;           /* of controlled loads, in an iteration */
+  Vector unit_force, unit_motion; /* where that factor grows by 1: forces, and displacements from them */
+  double reference;               /* the most that has acted in the stage so far, bonds at its begin among it */
+  double exerted;                 /* the same, or what they exert now if that is more */
+  double stiffness;               /* of the body at first, by which displacements make roundings of forces */
   double roundings,
       rounding_work; /* no closer than this are forces in balance; and the work of so much along all displacements */
   /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,
@@ -111,8 +110,8 @@ typedef struct Newton {
   int64_t factored_open;                /* key of one-sided supports at factorisation (loading/one_sided.h) */
   bool factored;
   int64_t open_in_factors; /* key of one-sided supports in the current factors; not part of the state */
-  int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
-  double *change_forces[MOTIONS]; /* room to foresee works; NULL: nobody wants them */
+  int64_t follows;      /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
+  Vector change_forces; /* room to foresee works; NULL: nobody wants them */
   /* of the last increment */
   double foreseen; /* work on bonds, had it gone on as it began, by tangents */
   int64_t iterations, products;

@@ -1,5 +1,4 @@
 #include "solver/newton.h"
-#include "solver/vectors.h"
 
 #include "base/clock.h"
 #include <math.h>
@@ -25,11 +24,11 @@ static int try_equations(Newton *n, Trial *least, Error *error)
   const double linearised = clock_seconds();
   if (linear_solver_prepare(&n->linear, error)) return BRECCIA_FAILURE;
   const double prepared = clock_seconds();
-  vectors_clear(n->change, p);
-  for (int k = 0; k < p->motions; ++k) memcpy(n->force[k], p->volume, sizeof(double) * (size_t)p->places);
-  unknowns_gather(&n->linear.unknowns, n->force);
+  vector_clear(&n->change);
+  for (int k = 0; k < p->space.rows; ++k) memcpy(n->force.row[k], p->volume, sizeof(double) * (size_t)p->places);
+  unknowns_gather(&n->linear.unknowns, &n->force);
   const double gathered = clock_seconds();
-  if (linear_solver_solve(&n->linear, n->force, n->change, 0.1, &record, error)) return BRECCIA_FAILURE;
+  if (linear_solver_solve(&n->linear, &n->force, &n->change, 0.1, &record, error)) return BRECCIA_FAILURE;
   least->linearised = fmin(least->linearised, linearised - begin);
   least->ready = fmin(least->ready, prepared - linearised);
   least->product = fmin(least->product, (clock_seconds() - gathered) / fmax(1, (double)record.iterations));
@@ -38,9 +37,9 @@ static int try_equations(Newton *n, Trial *least, Error *error)
 
 int newton_measure(Newton *n, StepCost *cost, Error *error)
 {
-  const int vectors = 3 + (n->control ? 2 : 0) + (n->change_forces[0] ? 1 : 0);
+  const int vectors = 3 + (n->control ? 2 : 0) + (n->change_forces.row[0] ? 1 : 0);
   const bool elastic = domain_is_elastic(n->domain) && !n->domain->failure.criterion;
-  cost->bytes += vectors * (double)vectors_bytes(n->domain->particles);
+  cost->bytes += vectors * (double)vector_bytes(&n->domain->particles->space);
   cost->least = !elastic || n->relaxes;
   if (n->relaxes) {
     cost->evaluations = least_relaxing;

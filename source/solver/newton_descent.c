@@ -1,32 +1,33 @@
 #include "solver/newton_descent.h"
 #include "solver/newton_parts.h"
 #include "solver/newton_stability.h"
-#include "solver/vectors.h"
 
 #include <math.h>
 
 int descent_create(Descent *d, const Newton *n, Error *error)
 {
   const Particles *p = n->domain->particles;
-  bool made = vectors_make(d->before, p, "descent", error) && vectors_make(d->room, p, "descent", error);
+  bool made =
+      vector_create(&d->before, &p->space, "descent", error) && vector_create(&d->room, &p->space, "descent", error);
   for (int k = 0; k < DESCENT_PAIRS && made; ++k)
-    made = vectors_make(d->step[k], p, "descent", error) && vectors_make(d->fall[k], p, "descent", error);
+    made = vector_create(&d->step[k], &p->space, "descent", error) &&
+           vector_create(&d->fall[k], &p->space, "descent", error);
   return made ? preconditioner_create(&d->preconditioner, n->domain, false, error) : BRECCIA_FAILURE;
 }
 
 size_t descent_bytes(const Descent *d, const Particles *p)
 {
-  return (2 * DESCENT_PAIRS + 2) * vectors_bytes(p) + preconditioner_bytes(&d->preconditioner);
+  return (2 * DESCENT_PAIRS + 2) * vector_bytes(&p->space) + preconditioner_bytes(&d->preconditioner);
 }
 
 void descent_destroy(Descent *d)
 {
   for (int k = 0; k < DESCENT_PAIRS; ++k) {
-    vectors_free(d->step[k]);
-    vectors_free(d->fall[k]);
+    vector_destroy(&d->step[k]);
+    vector_destroy(&d->fall[k]);
   }
-  vectors_free(d->before);
-  vectors_free(d->room);
+  vector_destroy(&d->before);
+  vector_destroy(&d->room);
   preconditioner_destroy(&d->preconditioner);
 }
 
@@ -34,23 +35,22 @@ void descent_destroy(Descent *d)
  *  @param[in] accuracy  of the equations */
 static int find_direction(Descent *d, Newton *n, double accuracy, LinearRecord *linear, Error *error)
 {
-  const Unknowns *u = &n->linear.unknowns;
   const int64_t oldest = d->count > DESCENT_PAIRS ? d->count - DESCENT_PAIRS : 0;
   double taken[DESCENT_PAIRS];
   if (newton_prepare(n, error)) return BRECCIA_FAILURE;
-  vectors_combine(n->domain, 0, d->room, 1, n->force);
+  vector_combine(0, &d->room, 1, &n->force);
   for (int64_t k = d->count - 1; k >= oldest; --k) {
     const int64_t at = k % DESCENT_PAIRS;
-    taken[at] = unknowns_work(u, d->room, d->step[at]) / d->work[at];
-    vectors_combine(n->domain, 1, d->room, -taken[at], d->fall[at]);
+    taken[at] = vector_inner(&d->room, &d->step[at], 1) / d->work[at];
+    vector_combine(1, &d->room, -taken[at], &d->fall[at]);
   }
-  if (newton_size_of_forces(n, d->room) > 0 &&
-      linear_solver_solve(&n->linear, d->room, n->change, accuracy, linear, error))
+  if (newton_size_of_forces(n, &d->room) > 0 &&
+      linear_solver_solve(&n->linear, &d->room, &n->change, accuracy, linear, error))
     return BRECCIA_FAILURE;
   for (int64_t k = oldest; k < d->count; ++k) {
     const int64_t at = k % DESCENT_PAIRS;
-    const double again = unknowns_work(u, d->fall[at], n->change) / d->work[at];
-    vectors_combine(n->domain, 1, n->change, taken[at] - again, d->step[at]);
+    const double again = vector_inner(&d->fall[at], &n->change, 1) / d->work[at];
+    vector_combine(1, &n->change, taken[at] - again, &d->step[at]);
   }
   n->products += linear->iterations;
   return BRECCIA_OK;
@@ -61,13 +61,13 @@ static void keep_pair(Descent *d, const Newton *n, double share)
 {
   const int64_t at = d->count % DESCENT_PAIRS;
   const Unknowns *u = &n->linear.unknowns;
-  vectors_combine(n->domain, 0, d->room, share, n->change);
-  unknowns_clear_rest(u, d->room);
-  vectors_combine(n->domain, 1, d->before, -1, n->force);
-  const double work = unknowns_work(u, d->before, d->room);
+  vector_combine(0, &d->room, share, &n->change);
+  unknowns_clear_rest(u, &d->room);
+  vector_combine(1, &d->before, -1, &n->force);
+  const double work = vector_inner(&d->before, &d->room, 1);
   if (!(work > 0)) return;
-  vectors_combine(n->domain, 0, d->step[at], 1, d->room);
-  vectors_combine(n->domain, 0, d->fall[at], 1, d->before);
+  vector_combine(0, &d->step[at], 1, &d->room);
+  vector_combine(0, &d->fall[at], 1, &d->before);
   d->work[at] = work;
   ++d->count;
 }
@@ -84,7 +84,7 @@ static NewtonOutcome search(Newton *n, double time, double start, double *work, 
   for (int k = 0;; ++k) {
     const NewtonOutcome outcome = newton_find_forces(n, time, error);
     const bool bad = outcome == NEWTON_LAW || outcome == NEWTON_DIVERGED;
-    *work = bad ? NAN : unknowns_work(&n->linear.unknowns, n->force, n->change);
+    *work = bad ? NAN : vector_inner(&n->force, &n->change, 1);
     if ((outcome != NEWTON_CONVERGED && !bad) || (!bad && fabs(*work) <= enough * start) || k == MOST) return outcome;
     if (bad || *work < 0) {
       high = *share;
@@ -117,18 +117,18 @@ static NewtonOutcome try_tangents(const Descent *d, Newton *n, double time, doub
   *kept = false;
   domain_take_secants(n->domain, SECANTS_OF_NONE);
   if (newton_linearise(n, error) || newton_prepare(n, error) ||
-      linear_solver_solve(&n->linear, n->force, n->change, newton_wanted_accuracy(n, force, 0), &linear, error))
+      linear_solver_solve(&n->linear, &n->force, &n->change, newton_wanted_accuracy(n, force, 0), &linear, error))
     return NEWTON_FAILED;
   n->products += linear.iterations;
   NewtonOutcome outcome = NEWTON_CONVERGED;
-  if (!linear.indefinite && isfinite(unknowns_work(&n->linear.unknowns, n->force, n->change))) {
-    unknowns_spread(&n->linear.unknowns, NAN, n->change);
+  if (!linear.indefinite && isfinite(vector_inner(&n->force, &n->change, 1))) {
+    unknowns_spread(&n->linear.unknowns, NAN, &n->change);
     newton_move(n, 1);
     outcome = newton_find_forces(n, time, error);
-    const double now = newton_size_of_forces(n, n->force), all = newton_size_of_motions(n, n->moved);
+    const double now = newton_size_of_forces(n, &n->force), all = newton_size_of_motions(n, &n->moved);
     *kept = outcome == NEWTON_CONVERGED && now < 0.5 * force;
-    *correction = all > 0 ? newton_size_of_motions(n, n->change) / all : 0;
-    *energy = energy_of(d, unknowns_work(&n->linear.unknowns, n->force, n->change));
+    *correction = all > 0 ? newton_size_of_motions(n, &n->change) / all : 0;
+    *energy = energy_of(d, vector_inner(&n->force, &n->change, 1));
     if (!*kept) newton_move(n, -1);
   }
   domain_take_secants(n->domain, SECANTS_OF_ALL);
@@ -145,30 +145,30 @@ static NewtonOutcome step(Descent *d, Newton *n, double time, double motions, do
   double work;
   const double accuracy = n->exerted > 0 ? newton_wanted_accuracy(n, force, 0) : n->spec->residual / 10;
   if (find_direction(d, n, accuracy, &linear, error)) return NEWTON_FAILED;
-  double start = unknowns_work(u, n->force, n->change);
+  double start = vector_inner(&n->force, &n->change, 1);
   if (!(start > 0) && d->count) { /* the pairs lead astray */
     d->count = 0;
     if (find_direction(d, n, accuracy, &linear, error)) return NEWTON_FAILED;
-    start = unknowns_work(u, n->force, n->change);
+    start = vector_inner(&n->force, &n->change, 1);
   }
   if (!isfinite(start)) return NEWTON_SINGULAR;
   NewtonOutcome outcome;
-  unknowns_spread(u, motions, n->change);
+  unknowns_spread(u, motions, &n->change);
   if (isnan(motions)) {
-    vectors_combine(n->domain, 0, d->before, 1, n->force);
+    vector_combine(0, &d->before, 1, &n->force);
     outcome = search(n, time, start, &work, share, error);
   } else {
     newton_move(n, 1);
     outcome = newton_find_forces(n, time, error);
-    work = unknowns_work(u, n->force, n->change);
+    work = vector_inner(&n->force, &n->change, 1);
   }
   if (outcome != NEWTON_CONVERGED) return outcome;
   if (isnan(motions)) keep_pair(d, n, *share);
-  const double all = newton_size_of_motions(n, n->moved);
+  const double all = newton_size_of_motions(n, &n->moved);
   if (d->first_work == 0) d->first_work = start;
-  *correction = all > 0 ? *share * newton_size_of_motions(n, n->change) / all : 0;
+  *correction = all > 0 ? *share * newton_size_of_motions(n, &n->change) / all : 0;
   *energy = energy_of(d, work);
-  n->unbalanced = n->exerted > 0 ? newton_size_of_forces(n, n->force) / n->exerted : INFINITY;
+  n->unbalanced = n->exerted > 0 ? newton_size_of_forces(n, &n->force) / n->exerted : INFINITY;
   newton_tell(n, *correction, *energy, *share, &linear);
   return NEWTON_CONVERGED;
 }
@@ -182,7 +182,7 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
                    1e-3; /* of a step; where it leads nowhere laws jump, as where ground flows that finds no rest */
   int idle = 0;
   const int64_t begin = n->iterations;
-  double force = newton_size_of_forces(n, n->force), near = nearer * force;
+  double force = newton_size_of_forces(n, &n->force), near = nearer * force;
   bool balanced = !moves && newton_is_balanced(n, force);
   d->count = 0;
   while (!balanced) {
@@ -195,7 +195,7 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
       near = nearer * force;
       if (outcome == NEWTON_CONVERGED && kept) {
         near = INFINITY;
-        n->unbalanced = newton_size_of_forces(n, n->force) / n->exerted;
+        n->unbalanced = newton_size_of_forces(n, &n->force) / n->exerted;
         newton_tell(n, correction, energy, 1, &(LinearRecord){0});
       }
     }
@@ -203,7 +203,7 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
       outcome = step(d, n, time, moves && n->iterations == 1 ? time : NAN, force, &share, &correction, &energy, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     idle = share < hardly ? idle + 1 : 0;
-    force = newton_size_of_forces(n, n->force);
+    force = newton_size_of_forces(n, &n->force);
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (!kept && isinf(near)) near = nearer * force;
     balanced = newton_has_converged(n, force, correction, energy, 1);
@@ -212,7 +212,7 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
     outcome = newton_take_lengths(n, time, &again, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     balanced = !again;
-    force = newton_size_of_forces(n, n->force);
+    force = newton_size_of_forces(n, &n->force);
     near = nearer * force;
     d->count = again ? 0 : d->count;
   }
@@ -225,31 +225,30 @@ static NewtonOutcome leave_saddle(Descent *d, Newton *n, double time, bool *push
   const double share = 1e-2; /* of what the increment has moved */
   const Unknowns *u = &n->linear.unknowns;
   domain_take_secants(n->domain, SECANTS_OF_NONE);
-  const int status = newton_seek_fall(n, &d->preconditioner, n->change, d->before, d->room, pushed, error);
+  const int status = newton_seek_fall(n, &d->preconditioner, &n->change, &d->before, &d->room, pushed, error);
   domain_take_secants(n->domain, SECANTS_OF_ALL);
   if (status) return NEWTON_FAILED;
   if (!*pushed) return NEWTON_CONVERGED;
   if (n->log) text_add(n->log, "    the body does not stay in this equilibrium\n");
-  const double size = newton_size_of_motions(n, n->change), way = unknowns_work(u, n->force, n->change) < 0 ? -1 : 1;
-  unknowns_spread(u, NAN, n->change);
-  newton_move(n, way * share * newton_size_of_motions(n, n->moved) / size);
+  const double size = newton_size_of_motions(n, &n->change), way = vector_inner(&n->force, &n->change, 1) < 0 ? -1 : 1;
+  unknowns_spread(u, NAN, &n->change);
+  newton_move(n, way * share * newton_size_of_motions(n, &n->moved) / size);
   return newton_find_forces(n, time, error);
 }
 
 static NewtonOutcome solve(Descent *d, Newton *n, double time, int64_t most, Error *error)
 {
   enum { MOST_SADDLES = 5 };
-  const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
   n->foreseen = 0;
   n->indefinite = false;
   d->first_work = 0;
-  vectors_clear(n->moved, p);
+  vector_clear(&n->moved);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = newton_add_motions(n, time);
-  vectors_clear(n->moved, p);
-  const double force = newton_size_of_forces(n, n->force);
+  vector_clear(&n->moved);
+  const double force = newton_size_of_forces(n, &n->force);
   n->unbalanced_before = n->unbalanced = n->exerted > 0 ? force / n->exerted : 0;
   outcome = go_down(d, n, time, moves, most, error);
   bool pushed = true;

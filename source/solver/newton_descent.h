@@ -14,13 +14,13 @@
 enum { DESCENT_PAIRS = 8 };
 
 typedef struct Descent {
-  double *step[DESCENT_PAIRS][MOTIONS]; /* of the unknowns, and by how much forces have fallen in them */
-  double *fall[DESCENT_PAIRS][MOTIONS];
+  Vector step[DESCENT_PAIRS]; /* of the unknowns, and by how much forces have fallen in them */
+  Vector fall[DESCENT_PAIRS];
   double work[DESCENT_PAIRS]; /* of the falls along the steps, above 0 */
   int64_t count;              /* of steps so far; of the last ones there are pairs */
   double first_work;          /* of the forces out of balance along the first step of the increment */
-  double *before[MOTIONS];    /* forces out of balance at the begin of an iteration */
-  double *room[MOTIONS];
+  Vector before;              /* forces out of balance at the begin of an iteration */
+  Vector room;
   Preconditioner preconditioner; /* to ask whether the body stays in an equilibrium */
 } Descent;
 

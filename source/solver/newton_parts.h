@@ -22,8 +22,8 @@ double newton_wanted_accuracy(const Newton *newton, double force, double before)
 void newton_tell(const Newton *newton, double correction, double work, double share, const LinearRecord *linear);
 
 /** Sizes of vectors over places: of forces, and of motions. */
-double newton_size_of_forces(const Newton *newton, double *const f[MOTIONS]);
-double newton_size_of_motions(const Newton *newton, double *const v[MOTIONS]);
+double newton_size_of_forces(const Newton *newton, const Vector *f);
+double newton_size_of_motions(const Newton *newton, const Vector *v);
 
 /** Whether so much force is none: where a body only moves as a whole nothing is exerted but roundings. */
 bool newton_is_balanced(const Newton *newton, double force);

@@ -14,8 +14,8 @@
  *  @param[out] fall           the motion, a vector of unknowns of any size
  *  @param[out] rest, product  lost
  *  @param[out] falls          whether there is one; else `fall` is lost */
-int newton_seek_fall(Newton *newton, Preconditioner *preconditioner, double *const fall[MOTIONS],
-                     double *const rest[MOTIONS], double *const product[MOTIONS], bool *falls, Error *error);
+int newton_seek_fall(Newton *newton, Preconditioner *preconditioner, const Vector *fall, const Vector *rest,
+                     const Vector *product, bool *falls, Error *error);
 
 /** Determines whether a body stays in the equilibrium held: whether its tangent stiffness is positive definite, as the
  *  linear solver sees that (`linear.definite` must be set). Overwrites `force` and `change` of `newton`.

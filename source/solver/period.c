@@ -7,14 +7,13 @@
 
 #include "loading/constraint.h"
 #include "solver/modes.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
 typedef struct Search {
   Domain *domain;
   LinearSolver linear;
-  double *force[MOTIONS], *motion[MOTIONS], *mass[MOTIONS]; /* right-hand side, answer, and mass times the answer */
+  Vector force, motion, mass; /* right-hand side, answer, and mass times the answer */
 } Search;
 
 static bool begins(const Loading *loading, const Load *load)
@@ -27,29 +26,24 @@ static void find_pull(const Search *s, double time)
 {
   const Loading *loading = s->linear.loading;
   Particles *p = s->domain->particles;
-  for (int k = 0; k < p->motions; ++k) {
-    memcpy(s->mass[k], p->external[k], sizeof(double) * (size_t)p->places);
-    memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
-  }
+  vector_copy(&s->mass, &p->external);
+  vector_clear(&p->external);
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if (!load->type->force || !load_acts(loading, load)) continue;
     load->type->force(load, p, loading_grown_factor(loading, load, time));
   }
-  for (int k = 0; k < p->motions; ++k) {
-    for (int64_t i = 0; i < p->places; ++i) s->force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
-    memcpy(p->external[k], s->mass[k], sizeof(double) * (size_t)p->places);
-  }
+  vector_weigh_sum(&s->force, p->volume, &p->internal, &p->external);
+  vector_copy(&p->external, &s->mass);
 }
 
 /** Adds what strains of loads that begin with the stage exert. */
 static int add_pull_of_strains(const Search *s, double time, Error *error)
 {
   const Particles *p = s->domain->particles;
-  vectors_clear(s->mass, p);
-  const int status = domain_add_grown_strains(s->domain, time, s->mass, error);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->force[k][i] += p->volume[i] * s->mass[k][i];
+  vector_clear(&s->mass);
+  const int status = domain_add_grown_strains(s->domain, time, &s->mass, error);
+  vector_add_weighted(&s->force, p->volume, &s->mass);
   return status;
 }
 
@@ -59,28 +53,27 @@ static void add_pull_of_motions(const Search *s)
   const Loading *loading = s->linear.loading;
   const Particles *p = s->domain->particles;
   bool moves = false;
-  vectors_clear(s->motion, p);
+  vector_clear(&s->motion);
   for (int n = 0; n < loading->constraint_count; ++n) {
     const Constraint *c = &loading->constraints[n];
     if (c->order || c->value == 0 || c->images || !begins(loading, c->load)) continue;
     const double factor = history_factor(&c->load->history, history_rise(&c->load->history));
     for (int64_t at = 0; at < c->load->selection.count; ++at)
-      constraint_add(c, s->motion, c->load->selection.places[at],
+      constraint_add(c, s->motion.row, c->load->selection.places[at],
                      factor * c->value * (c->platen ? 1 : constraint_part(c, at)));
     moves = true;
   }
   if (!moves) return;
-  domain_linear_step(s->domain, s->motion, s->mass);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->force[k][i] += p->volume[i] * s->mass[k][i];
+  domain_linear_step(s->domain, &s->motion, &s->mass);
+  vector_add_weighted(&s->force, p->volume, &s->mass);
 }
 
 static int solve(Search *s, Error *error)
 {
   const double accuracy = 1e-11, enough = 1e-6;
   LinearRecord record;
-  vectors_clear(s->motion, s->domain->particles);
-  if (linear_solver_solve(&s->linear, s->force, s->motion, accuracy, &record, error)) return BRECCIA_FAILURE;
+  vector_clear(&s->motion);
+  if (linear_solver_solve(&s->linear, &s->force, &s->motion, accuracy, &record, error)) return BRECCIA_FAILURE;
   if (record.residual <= enough) return BRECCIA_OK;
   return error_add(error, BRECCIA_FAILURE,
                    "the slowest vibration could not be found: equations with the body's stiffness were solved up to a "
@@ -93,14 +86,13 @@ static double turn(Search *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->linear.unknowns;
-  unknowns_spread(u, NAN, s->motion);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->mass[k][i] = p->inertia[k][i] * p->volume[i] * s->motion[k][i];
-  unknowns_gather(u, s->mass);
-  unknowns_clear_rest(u, s->motion);
-  const double square = unknowns_work(u, s->mass, s->motion), work = unknowns_work(u, s->force, s->motion);
+  unknowns_spread(u, NAN, &s->motion);
+  vector_weigh_product(&s->mass, p->volume, &p->inertia, &s->motion);
+  unknowns_gather(u, &s->mass);
+  unknowns_clear_rest(u, &s->motion);
+  const double square = vector_inner(&s->mass, &s->motion, 1), work = vector_inner(&s->force, &s->motion, 1);
   if (!(square > 0)) return NAN;
-  vectors_combine(s->domain, 0, s->force, 1 / sqrt(square), s->mass);
+  vector_combine(0, &s->force, 1 / sqrt(square), &s->mass);
   return work / square - s->linear.mass_factor;
 }
 
@@ -153,9 +145,9 @@ int period_find(Domain *d, const Loading *loading, double time, double *period, 
   Search s = {.domain = d,
               .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};
   double square = NAN;
-  int status = vectors_make(s.force, p, "quasi-static loading", error) &&
-                       vectors_make(s.motion, p, "quasi-static loading", error) &&
-                       vectors_make(s.mass, p, "quasi-static loading", error)
+  int status = vector_create(&s.force, &p->space, "quasi-static loading", error) &&
+                       vector_create(&s.motion, &p->space, "quasi-static loading", error) &&
+                       vector_create(&s.mass, &p->space, "quasi-static loading", error)
                    ? BRECCIA_OK
                    : BRECCIA_FAILURE;
   if (!status) {
@@ -172,16 +164,16 @@ int period_find(Domain *d, const Loading *loading, double time, double *period, 
   }
   if (!status) {
     add_pull_of_motions(&s);
-    unknowns_gather(&s.linear.unknowns, s.force);
+    unknowns_gather(&s.linear.unknowns, &s.force);
     status = linear_solver_create(&s.linear, LINEAR_AUTOMATIC, error);
   }
   if (!status) status = linear_solver_prepare(&s.linear, error);
   if (!status) status = iterate(&s, &square, error);
   if (!status) status = judge(square, nothing * shift, period, error);
   linear_solver_destroy(&s.linear);
-  vectors_free(s.force);
-  vectors_free(s.motion);
-  vectors_free(s.mass);
+  vector_destroy(&s.force);
+  vector_destroy(&s.motion);
+  vector_destroy(&s.mass);
   domain_evaluate(d, NULL);
   return status;
 }

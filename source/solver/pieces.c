@@ -173,7 +173,7 @@ static void hold_row(const Constraint *c, int64_t n, void *context)
   h->worked = true;
   if (c->row) { /* a particle that cannot turn */
     for (int k = 0; k < 3; ++k)
-      if (c->direction[k] != 0) moved[q->particles->motions == 4 ? RIGID - 1 : 3 + k] = c->direction[k];
+      if (c->direction[k] != 0) moved[q->particles->space.rows == 4 ? RIGID - 1 : 3 + k] = c->direction[k];
     add_row(h, moved);
     return;
   }
@@ -271,7 +271,7 @@ static void judge(Pieces *q, PiecesTaken taken, LoosePiece *loose)
   note_loads(q);
   for (int64_t n = 0; n < q->count; ++n) {
     Hold *h = &q->holds[n];
-    const bool turns = h->particles > 1 || q->particles->motions > 3;
+    const bool turns = h->particles > 1 || q->particles->space.rows > 3;
     const bool wanted[RIGID] = {true,
                                 dimensions > 1,
                                 dimensions > 2,

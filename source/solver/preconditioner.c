@@ -48,7 +48,7 @@ double preconditioner_probe(const Preconditioner *m, const LinearSolver *s, doub
   }
   const double r = sqrt(square), size = sin(waves * r / s->domain->family.horizon + phase);
   if (p->number[place] < 0) return 0;
-  if (row >= ROTATION && p->motions == 4) return size; /* about the normal of the plane */
+  if (p->space.row[row].kind == ROW_ROTATION && p->space.rows == 4) return size; /* about the normal of the plane */
   return r > 0 ? size * from[row % 3] / r : 0;
 }
 
@@ -56,15 +56,16 @@ double preconditioner_probe(const Preconditioner *m, const LinearSolver *s, doub
 typedef struct Probing {
   Preconditioner *m;
   LinearSolver *solver;
-  double *const *v, *const *kv; /* the probe and its product with K */
-  int probe;                    /* number of the probe, 0 to PROBES - 1 */
+  const Vector *v, *kv; /* the probe and its product with K */
+  int probe;            /* number of the probe, 0 to PROBES - 1 */
+  double share, factor; /* of the products in their mean; of expected values */
 } Probing;
 
 /** 1 or -1, as if at random, of a row of motion of a probe at a place (SplitMix64). */
-static double sign(int probe, int row, int64_t place)
+static double sign(const VectorSpace *space, int probe, int row, int64_t place)
 {
   uint64_t x = ((uint64_t)place * 3 + (uint64_t)row % 3) * PROBES + (uint64_t)probe + 1;
-  if (row >= ROTATION) x += (uint64_t)1 << 62;
+  if (row >= space->rotation) x += (uint64_t)1 << 62;
   x *= 0x9e3779b97f4a7c15u;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
   x = (x ^ x >> 27) * 0x94d049bb133111ebu;
@@ -76,27 +77,32 @@ static double probe_of(const Probing *p, int probe, int row, int64_t place)
 {
   if (p->solver->domain->particles->number[place] < 0) return 0;
   const double size = p->m->any_pose ? preconditioner_probe(p->m, p->solver, 2 * acos(-1) * probe / PROBES, row, place)
-                                     : sign(probe, row, place);
+                                     : sign(p->v->space, probe, row, place);
   return size / unknowns_length(&p->solver->unknowns, row);
 }
 
-static void probe_fill_batch(void *context, int64_t b)
+static void probe_fill_tile(void *context, int64_t first, int64_t last)
 {
   const Probing *p = context;
-  const Batch *batch = &p->solver->domain->batches[b];
-  const Particles *of = p->solver->domain->particles;
-  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
-    for (int k = 0; k < of->motions; ++k) p->v[k][i] = probe_of(p, p->probe, k, i);
+  for (int64_t i = first; i < last; ++i)
+    for (int k = 0; k < p->v->space->rows; ++k) p->v->row[k][i] = probe_of(p, p->probe, k, i);
+  for (int64_t i = first; i < last && p->probe == 0; ++i) {
+    p->m->diagonal[i] = 0;
+    if (p->m->turning) p->m->turning[i] = 0;
+  }
 }
 
-static void add_products(void *context, int64_t b)
+/** Adds v K v to the diagonal. @param[out] cross  product of K v with the other of the first two probes */
+static void add_products(void *context, int64_t first, int64_t last, double *cross)
 {
   const Probing *p = context;
-  const Batch *batch = &p->solver->domain->batches[b];
-  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i) {
-    for (int k = 0; k < 3; ++k) p->m->diagonal[i] += p->v[k][i] * p->kv[k][i];
-    for (int k = ROTATION; k < p->solver->domain->particles->motions; ++k) p->m->turning[i] += p->v[k][i] * p->kv[k][i];
-  }
+  const VectorSpace *space = p->v->space;
+  for (int64_t i = first; i < last; ++i)
+    for (int k = 0; k < space->rows; ++k) {
+      double *of = space->row[k].kind == ROW_DISPLACEMENT ? p->m->diagonal : p->m->turning;
+      of[i] += p->v->row[k][i] * p->kv->row[k][i];
+      if (p->probe < 2) *cross += p->kv->row[k][i] * probe_of(p, 1 - p->probe, k, i);
+    }
 }
 
 /** What a particle of its volume, moduli and family would have on the diagonal, but for a factor that all have. */
@@ -113,24 +119,39 @@ static double probes_square_sum(const Preconditioner *m, int rows)
   return m->any_pose ? PROBES / 2.0 : PROBES * rows;
 }
 
-/** Of rotations the least is a share of what the displacements have, at the radius of gyration: of links that do not bend it is nothing, and they stay. */
-static void finish_turning(Preconditioner *m, const LinearSolver *s)
+enum { FOUND, EXPECTED, SIZE, PROBE_SUMS };
+
+static void sum_turning(void *context, int64_t first, int64_t last, double *sums)
 {
-  const Domain *d = s->domain;
-  const double length = s->unknowns.length,
-               share = length * length / probes_square_sum(m, d->particles->motions - ROTATION), least = 0.2,
-               nothing = 1e-10;
-  double found = 0, expected = 0;
-  for (int64_t i = 0; i < d->particles->places; ++i) {
-    if (isinf(m->diagonal[i])) continue;
-    found += m->turning[i] * share;
-    expected += length * length * m->diagonal[i];
+  const Probing *p = context;
+  const double length = p->solver->unknowns.length;
+  for (int64_t i = first; i < last; ++i) {
+    if (isinf(p->m->diagonal[i])) continue;
+    sums[FOUND] += p->m->turning[i] * p->share;
+    sums[EXPECTED] += length * length * p->m->diagonal[i];
   }
-  const double factor = found > nothing * expected ? found / expected : 0;
-  for (int64_t i = 0; i < d->particles->places; ++i)
-    m->turning[i] = factor == 0 || isinf(m->diagonal[i])
-                        ? INFINITY
-                        : fmax(m->turning[i] * share, least * factor * length * length * m->diagonal[i]);
+}
+
+static void bound_turning(void *context, int64_t first, int64_t last)
+{
+  const Probing *p = context;
+  const double least = 0.2, length = p->solver->unknowns.length, bound = least * p->factor * length * length;
+  for (int64_t i = first; i < last; ++i)
+    p->m->turning[i] = p->factor == 0 || isinf(p->m->diagonal[i])
+                           ? INFINITY
+                           : fmax(p->m->turning[i] * p->share, bound * p->m->diagonal[i]);
+}
+
+/** Of rotations the least is a share of what the displacements have, at the radius of gyration: of links that do not bend it is nothing, and they stay. */
+static void finish_turning(Probing *p)
+{
+  const VectorSpace *space = p->v->space;
+  const double length = p->solver->unknowns.length, nothing = 1e-10;
+  double sums[PROBE_SUMS];
+  p->share = length * length / probes_square_sum(p->m, space->rows - space->rotation);
+  vector_sum_tiles(space, sum_turning, p, PROBE_SUMS, sums);
+  p->factor = sums[FOUND] > nothing * sums[EXPECTED] ? sums[FOUND] / sums[EXPECTED] : 0;
+  vector_each_tile(space, bound_turning, p);
 }
 
 /** Returns the share of the square of a probe at a place that belongs to unknowns, at least a quarter: supports hold
@@ -139,10 +160,10 @@ static double probe_free_share(const Probing *p, int64_t place)
 {
   const double least = 0.25;
   double whole = 0, left = 0;
-  for (int k = 0; k < ROTATION; ++k) {
+  for (int k = 0; k < 3; ++k) {
     const double probe = probe_of(p, p->probe, k, place);
     whole += probe * probe;
-    left += p->v[k][place] * p->v[k][place];
+    left += p->v->row[k][place] * p->v->row[k][place];
   }
   return whole > 0 ? fmax(least, left / whole) : 1;
 }
@@ -156,48 +177,57 @@ static double probe_uneven(int32_t number)
   return 1 + size * (random_uniform(&state) - 0.5);
 }
 
+static void sum_diagonal(void *context, int64_t first, int64_t last, double *sums)
+{
+  const Probing *p = context;
+  const Domain *d = p->solver->domain;
+  double *diagonal = p->m->diagonal;
+  for (int64_t i = first; i < last; ++i) {
+    if (d->particles->number[i] < 0) continue;
+    sums[SIZE] += fabs(diagonal[i]);
+    if (p->m->any_pose) diagonal[i] /= probe_free_share(p, i);
+    sums[FOUND] += diagonal[i] * p->share;
+    sums[EXPECTED] += guess(d, i);
+  }
+}
+
+static void bound_diagonal(void *context, int64_t first, int64_t last)
+{
+  const Probing *p = context;
+  const Domain *d = p->solver->domain;
+  const double least = 0.2;
+  double *diagonal = p->m->diagonal;
+  for (int64_t i = first; i < last; ++i) {
+    const int32_t number = d->particles->number[i];
+    const bool lost = number < 0 || (diagonal[i] == 0 && !family_count(&d->family, (int32_t)i));
+    diagonal[i] = lost ? INFINITY : fmax(diagonal[i] * p->share, least * p->factor * guess(d, i));
+    if (p->m->any_pose && !lost) diagonal[i] *= probe_uneven(number);
+  }
+}
+
 /** Estimates the diagonal of K as the mean of the products v_i (K v)_i over pseudo-random vectors v (Bekas, Kokiopoulou
  *  and Saad 2007, Appl. Numer. Math. 57, 1214). The terms of other entries of K average out, and are small where
  *  families are large. The estimate is bounded from below by a share of the value expected from the family of a
  *  particle, because K of a softening body is not positive, but M must be. */
-static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
+static void find_diagonal(Preconditioner *m, LinearSolver *s, const Vector *v, const Vector *kv)
 {
-  const Domain *d = s->domain;
-  const int64_t places = d->particles->places;
-  const double share = 1 / probes_square_sum(m, d->body.dimensions), least = 0.2;
-  double cross[2] = {0}, found = 0, expected = 0;
-  memset(m->diagonal, 0, sizeof(double) * (size_t)places);
-  if (m->turning) memset(m->turning, 0, sizeof(double) * (size_t)places);
-  for (int probe = 0; probe < PROBES; ++probe) {
-    Probing p = {m, s, v, kv, probe};
-    team_each(d->batch_count, probe_fill_batch, &p);
+  Probing p = {.m = m, .solver = s, .v = v, .kv = kv, .share = 1 / probes_square_sum(m, s->domain->body.dimensions)};
+  double cross[PROBES], sums[PROBE_SUMS];
+  for (; p.probe < PROBES; ++p.probe) {
+    vector_each_tile(v->space, probe_fill_tile, &p);
     linear_solver_apply(s, v, kv);
     unknowns_clear_rest(&s->unknowns, v);
-    team_each(d->batch_count, add_products, &p);
-    for (int64_t i = 0; i < places && probe < 2; ++i)
-      for (int k = 0; k < d->particles->motions; ++k) cross[probe] += kv[k][i] * probe_of(&p, 1 - probe, k, i);
+    vector_sum_tiles(v->space, add_products, &p, 1, &cross[p.probe]);
   }
-  Probing last = {m, s, v, kv, PROBES - 1};
-  double size = 0;
-  for (int64_t i = 0; i < places; ++i) {
-    if (d->particles->number[i] < 0) continue;
-    size += fabs(m->diagonal[i]);
-    if (m->any_pose) m->diagonal[i] /= probe_free_share(&last, i);
-    found += m->diagonal[i] * share;
-    expected += guess(d, i);
-  }
-  m->is_symmetric = fabs(cross[0] - cross[1]) <= 1e-9 * size;
-  const double factor = found > 0 ? found / expected : 1;
-  for (int64_t i = 0; i < places; ++i) {
-    const bool lost = d->particles->number[i] < 0 || (m->diagonal[i] == 0 && !family_count(&d->family, (int32_t)i));
-    m->diagonal[i] = lost ? INFINITY : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
-    if (m->any_pose && !lost) m->diagonal[i] *= probe_uneven(d->particles->number[i]);
-  }
-  if (m->turning) finish_turning(m, s);
+  p.probe = PROBES - 1; /* v holds the last one */
+  vector_sum_tiles(v->space, sum_diagonal, &p, PROBE_SUMS, sums);
+  m->is_symmetric = fabs(cross[0] - cross[1]) <= 1e-9 * sums[SIZE];
+  p.factor = sums[FOUND] > 0 ? sums[FOUND] / sums[EXPECTED] : 1;
+  vector_each_tile(v->space, bound_diagonal, &p);
+  if (m->turning) finish_turning(&p);
 }
 
-int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS],
-                           Error *error)
+int preconditioner_prepare(Preconditioner *m, LinearSolver *s, const Vector *v, const Vector *kv, Error *error)
 {
   find_diagonal(m, s, v, kv);
   if (!m->grid) return BRECCIA_OK;
@@ -209,8 +239,7 @@ int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[M
 
 typedef struct Scaling {
   const Preconditioner *m;
-  const Domain *domain;
-  double *const *f, *const *v;
+  const Vector *f, *v;
 } Scaling;
 
 BRECCIA_CLONES
@@ -222,20 +251,17 @@ static void divide(const double *diagonal, double *const *f, double *const *v, i
   }
 }
 
-static void divide_batch(void *context, int64_t b)
+static void divide_tile(void *context, int64_t first, int64_t last)
 {
   const Scaling *s = context;
-  const Batch *batch = &s->domain->batches[b];
-  const int64_t first = batch->first * SLICE, last = batch->last * SLICE;
-  divide(s->m->diagonal, s->f, s->v, ROTATION, first, last);
-  if (s->m->turning)
-    divide(s->m->turning, s->f + ROTATION, s->v + ROTATION, s->domain->particles->motions - ROTATION, first, last);
+  const int rows = s->f->space->rows, turn = s->f->space->rotation;
+  divide(s->m->diagonal, s->f->row, s->v->row, turn, first, last);
+  if (s->m->turning) divide(s->m->turning, s->f->row + turn, s->v->row + turn, rows - turn, first, last);
 }
 
-void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double *const f[MOTIONS],
-                          double *const v[MOTIONS])
+void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, const Vector *f, const Vector *v)
 {
-  team_each(s->domain->batch_count, divide_batch, &(Scaling){m, s->domain, f, v});
+  vector_each_tile(f->space, divide_tile, &(Scaling){m, f, v});
   if (m->grid) coarse_grid_correct(m->grid, f, v);
   unknowns_clear_rest(&s->unknowns, v);
 }

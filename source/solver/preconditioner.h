@@ -29,12 +29,12 @@ void preconditioner_destroy(Preconditioner *preconditioner);
 
 /** The domain was linearised again. It takes some products with K.
  *  @param[out] v, kv  vectors to work with */
-int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver, double *const v[MOTIONS],
-                           double *const kv[MOTIONS], Error *error);
+int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver, const Vector *v, const Vector *kv,
+                           Error *error);
 
 /** v = M^-1 f, both vectors of unknowns. */
-void preconditioner_apply(const Preconditioner *preconditioner, const LinearSolver *solver, double *const f[MOTIONS],
-                          double *const v[MOTIONS]);
+void preconditioner_apply(const Preconditioner *preconditioner, const LinearSolver *solver, const Vector *f,
+                          const Vector *v);
 /** Returns a component of a pseudo-random motion that turns with the body and does not depend on the order of
  *  particles. Each particle moves along the line from the centre of the body, by the sine of its distance (1000 radians
  *  over a horizon). Rotations about the normal of a plane have that sine, too. Only with any_pose.

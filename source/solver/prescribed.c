@@ -60,8 +60,8 @@ static Rows rows_of(const Explicit *s, const Constraint *constraint)
 {
   const Particles *p = s->domain->particles;
   const int row = constraint->row;
-  return (Rows){p->displacement + row, p->velocity + row, s->acceleration + row,   p->internal + row,
-                p->external + row,     p->inertia[row],   row && p->orientation[0]};
+  return (Rows){p->displacement.row + row, p->velocity.row + row, s->acceleration.row + row, p->internal.row + row,
+                p->external.row + row,     p->inertia.row[row],   row && p->orientation[0]};
 }
 
 static int64_t part_end(const Constraint *constraint, int64_t part)
@@ -106,7 +106,7 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
            off = (rows.from_step ? motion->moved * part_of : from + motion->target * part_of) -
                  along(rows.displacement, d, i);
     if (constraint_follows(constraint)) {
-      off += constraint_followed(constraint, s->domain->particles->displacement, k);
+      off += constraint_followed(constraint, s->domain->particles->displacement.row, k);
       constraint->moved[k] = drifted + off;
     }
     if (lets_go && !constraint->platen) {
@@ -165,8 +165,8 @@ static bool is_turn(const Explicit *s, const Constraint *constraint, bool second
 static void explicit_strike_platen(Explicit *s, const Constraint *c, const struct Motion *motion)
 {
   const Particles *p = s->domain->particles;
-  const double passed = motion->target - platen_centre_displacement(c, p->displacement),
-               fast = platen_centre_rate(c, p->velocity), sudden = passed / s->clock->time_step;
+  const double passed = motion->target - platen_centre_displacement(c, p->displacement.row),
+               fast = platen_centre_rate(c, p->velocity.row), sudden = passed / s->clock->time_step;
   c->platen->strikes = 0;
   if (!constraint_is_loose(c) || !(c->one_sided->pushes * passed > 0)) return;
   c->one_sided->open[0] = 0;
@@ -174,12 +174,12 @@ static void explicit_strike_platen(Explicit *s, const Constraint *c, const struc
   c->platen->still = motion->rate - fast - sudden;
   for (int m = 0; m < constraint_leaders(c); ++m) {
     const int32_t i = constraint_leader(c, m);
-    const double half = constraint_along(c, p->velocity, i), volume = s->domain->counted[i],
-                 bond = -0.5 * constraint_along(c, p->internal, i) * passed * volume;
+    const double half = constraint_along(c, p->velocity.row, i), volume = s->domain->counted[i],
+                 bond = -0.5 * constraint_along(c, p->internal.row, i) * passed * volume;
     s->ledger->bond_work += bond;
     s->ledger->external_work += bond + 0.5 * p->density[i] * volume * sudden * (2 * half + sudden);
-    constraint_add(c, p->displacement, i, passed);
-    constraint_add(c, p->velocity, i, sudden);
+    constraint_add(c, p->displacement.row, i, passed);
+    constraint_add(c, p->velocity.row, i, sudden);
   }
 }
 
@@ -196,10 +196,10 @@ static void explicit_still_platen(Explicit *s, const Constraint *c)
     s->ledger->damping_work += lost;
     s->ledger->external_work += lost;
     if (!constraint_leads(c, n)) continue;
-    const double gain = 0.5 * mass * q->still * (2 * constraint_along(c, p->velocity, i) + q->still);
+    const double gain = 0.5 * mass * q->still * (2 * constraint_along(c, p->velocity.row, i) + q->still);
     s->ledger->external_work += gain;
     s->ledger->kinetic += gain;
-    constraint_add(c, p->velocity, i, q->still);
+    constraint_add(c, p->velocity.row, i, q->still);
   }
   q->strikes = q->still = 0;
   s->ledger->damped = 1;
@@ -212,7 +212,7 @@ void explicit_note_open_platens(Explicit *s)
     const Constraint *c = &s->loading->constraints[n];
     if (!c->platen || !c->platen->opens) continue;
     const int32_t i = constraint_leader(c, c->platen->leaders);
-    const double half = constraint_along(c, p->velocity, i);
+    const double half = constraint_along(c, p->velocity.row, i);
     s->ledger->external_work += 0.5 * p->density[i] * s->domain->counted[i] * half * half;
     c->platen->opens = false;
   }
@@ -249,7 +249,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
     double mass = rows.inertia[i] * counted[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
     const double part_of = constraint_part(constraint, k);
     double moved = constraint_follows(constraint) ? constraint->moved[k] : motion->moved * part_of,
-           rate = motion->rate * part_of + constraint_followed(constraint, s->domain->particles->velocity, k);
+           rate = motion->rate * part_of + constraint_followed(constraint, s->domain->particles->velocity.row, k);
     double fi = along(rows.internal, d, i), fe = along(rows.external, d, i), work = 0.5 * moved * counted[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
     damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * work;
@@ -289,11 +289,11 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   const double before = constraint_displacement(constraint, time - dt), now = constraint_displacement(constraint, time),
                after = constraint_displacement(constraint, time + dt);
   const double part = constraint_part(constraint, n);
-  const double acceleration =
-                   part * (after - 2 * now + before) / (dt * dt) + constraint_followed(constraint, s->acceleration, n),
-               rate = part * (after - before) / (2 * dt) + constraint_followed(constraint, p->velocity, n);
+  const double acceleration = part * (after - 2 * now + before) / (dt * dt) +
+                              constraint_followed(constraint, s->acceleration.row, n),
+               rate = part * (after - before) / (2 * dt) + constraint_followed(constraint, p->velocity.row, n);
   double drag = 0; /* of stiffness */
   for (int k = 0; k < 3 && s->viscous.time > 0; ++k)
-    if (constraint->direction[k] != 0) drag += constraint->direction[k] * s->viscous.drag[constraint->row + k][i];
-  return p->volume[i] * (drag + p->inertia[constraint->row][i] * (acceleration + explicit_mass_damping(s) * rate));
+    if (constraint->direction[k] != 0) drag += constraint->direction[k] * s->viscous.drag.row[constraint->row + k][i];
+  return p->volume[i] * (drag + p->inertia.row[constraint->row][i] * (acceleration + explicit_mass_damping(s) * rate));
 }

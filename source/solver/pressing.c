@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 #include "loading/one_sided.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,14 +89,6 @@ static void pressing_review(void *context, const Constraint *c, int64_t first)
   }
 }
 
-static double pressing_largest_displacement(const Particles *p)
-{
-  double largest = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) largest = fmax(largest, fabs(p->displacement[k][i]));
-  return largest;
-}
-
 /** Orders wrong entries by decreasing size, and equal ones by index. */
 static int pressing_compare(const void *a, const void *b)
 {
@@ -113,7 +104,7 @@ static void pressing_find_wrong(Pressing *q, const Newton *n, double time)
               .particles = p,
               .time = time,
               .force = fmax(n->spec->residual * n->exerted, n->roundings),
-              .gap = n->spec->residual * pressing_largest_displacement(p)};
+              .gap = n->spec->residual * vector_largest(&p->displacement)};
   q->wrong_count = 0;
   pressing_each(n->loading, pressing_review, &r);
   pressing_each(n->loading, pressing_copy, q->solved);
@@ -204,14 +195,13 @@ bool pressing_choose(Pressing *q, Newton *n)
   }
 }
 
-void pressing_take_up(const Newton *n, double *const *drag)
+void pressing_take_up(const Newton *n, const Vector *drag)
 {
   const Particles *p = n->domain->particles;
   if (!one_sided_count(n->loading)) return;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]) - (drag ? drag[k][i] : 0);
-  one_sided_find(n->loading, n->force);
+  vector_weigh_sum(&n->force, p->volume, &p->internal, &p->external);
+  if (drag) vector_combine(1, &n->force, -1, drag);
+  one_sided_find(n->loading, &n->force);
   one_sided_accept(n->loading);
 }
 

@@ -39,7 +39,7 @@ bool pressing_choose(Pressing *pressing, Newton *newton);
 
 /** Computes the forces with which entries press at the beginning of a stage, from the forces on all particles.
  *  @param[in] drag  [motions][places] forces of damping; NULL: none */
-void pressing_take_up(const Newton *newton, double *const *drag);
+void pressing_take_up(const Newton *newton, const Vector *drag);
 
 /** Calls `one` for each entry that is open at the beginning of the increment and closed now. */
 void pressing_each_closing(const Pressing *pressing, const Loading *loading,

@@ -3,27 +3,25 @@
 #include "loading/constraint.h"
 #include "loading/support.h"
 #include "solver/unknowns.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
 int reactions_create(Reactions *r, const Particles *p, Error *error)
 {
   bool failed = false;
-  for (int k = 0; k < ROTATION && !failed; ++k)
-    failed = !(r->force[k] = places_reserved(p->places, "reactions", error));
+  for (int k = 0; k < 3 && !failed; ++k) failed = !(r->force[k] = places_reserved(p->places, "reactions", error));
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 void reactions_destroy(Reactions *r)
 {
-  vectors_free(r->force);
+  for (int k = 0; k < 3; ++k) places_free(&r->force[k]);
 }
 
 static void add_force(Wrench *w, const Particles *p, int32_t i, const double force[3])
 {
   double arm[3];
-  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement[k][i] - w->about[k];
+  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement.row[k][i] - w->about[k];
   w->size += sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3, last = (k + 2) % 3;
@@ -51,7 +49,7 @@ static const Margin *reactions_margin(const Body *body, int64_t n)
 /** Supports to which the force on an image belongs along one axis, in equal parts. */
 typedef struct Owners {
   int count;
-  const LoadSpec *support[ROTATION];
+  const LoadSpec *support[3];
 } Owners;
 
 enum { OWNER_PERIODIC, OWNER_SLIDES, OWNER_HOLDS, OWNER_NORMAL }; /* ranks of faces along an axis */
@@ -184,7 +182,8 @@ static void note_middle(Summing *s, int32_t i, int32_t other)
   const Particles *p = s->solver->domain->particles;
   ++s->rows;
   for (int k = 0; k < 3; ++k)
-    s->middle[k] += (p->position[k][i] + p->displacement[k][i] + p->position[k][other] + p->displacement[k][other]) / 2;
+    s->middle[k] +=
+        (p->position[k][i] + p->displacement.row[k][i] + p->position[k][other] + p->displacement.row[k][other]) / 2;
 }
 
 static void note_row(const Constraint *c, int64_t n, void *context)
@@ -193,7 +192,7 @@ static void note_row(const Constraint *c, int64_t n, void *context)
   const Particles *p = s->solver->domain->particles;
   const int32_t i = c->load->selection.places[n];
   if (c->row) return;
-  for (int k = 0; k < 3; ++k) s->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
+  for (int k = 0; k < 3; ++k) s->force[k][i] = p->volume[i] * (p->internal.row[k][i] + p->external.row[k][i]);
   if (!counts(s, c, i)) return;
   const int32_t other = c->images ? c->images[n] : i; /* the face is half way to what is mirrored */
   if (other != i && body_outside(&s->solver->domain->body, p->number[other])) return; /* in a corner */
@@ -218,9 +217,9 @@ static void add_turning(Summing *s, const Constraint *c, int64_t n)
   const int32_t i = c->load->selection.places[n];
   for (int k = 0; k < 3 && counts(s, c, i); ++k) {
     if (c->direction[k] == 0) continue;
-    double moment = -p->volume[i] * (p->internal[c->row + k][i] + p->external[c->row + k][i]);
+    double moment = -p->volume[i] * (p->internal.row[c->row + k][i] + p->external.row[c->row + k][i]);
     if (s->solver->type->inertia && !c->images) moment += s->solver->type->inertia(s->solver, c, n);
-    s->sum.moment[p->motions == 4 ? 2 : k] += moment;
+    s->sum.moment[p->space.rows == 4 ? 2 : k] += moment;
   }
 }
 
@@ -326,10 +325,10 @@ Wrench reactions_of_loads(const Solver *solver, const double about[3])
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double force[3];
-    for (int k = 0; k < 3; ++k) force[k] = p->volume[i] * p->external[k][i];
+    for (int k = 0; k < 3; ++k) force[k] = p->volume[i] * p->external.row[k][i];
     add_force(&sum, p, i, force);
-    for (int k = ROTATION; k < p->motions; ++k)
-      sum.moment[p->motions == 4 ? 2 : k - ROTATION] += p->volume[i] * p->external[k][i];
+    for (int k = p->space.rotation; k < p->space.rows; ++k)
+      sum.moment[p->space.row[k].axis] += p->volume[i] * p->external.row[k][i];
   }
   return sum;
 }

@@ -7,7 +7,8 @@
 #include "solver/solver.h"
 
 typedef struct Reactions {
-  double *force[MOTIONS]; /* on held particles, what is left of it while they are gone through; untouched elsewhere */
+  double
+      *force[3]; /* [places] on held particles, what is left of it while they are gone through; untouched elsewhere */
 } Reactions;
 
 /** A sum of forces, and its moment about a point. */

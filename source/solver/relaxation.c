@@ -2,7 +2,6 @@
 
 #include "base/random.h"
 #include "base/tridiagonal.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -18,54 +17,52 @@ int relaxation_create(Relaxation *r, Newton *n, Error *error)
   n->linear.elastic = &r->elastic;
   const bool failed = elastic_step_create(&r->elastic, n->domain, error) ||
                       preconditioner_create(&r->mass, n->domain, any_pose, error) ||
-                      !vectors_make(r->velocity, p, "dynamic relaxation", error) ||
-                      !vectors_make(r->momentum, p, "dynamic relaxation", error) ||
-                      !vectors_make(r->product, p, "dynamic relaxation", error);
+                      !vector_create(&r->velocity, &p->space, "dynamic relaxation", error) ||
+                      !vector_create(&r->momentum, &p->space, "dynamic relaxation", error) ||
+                      !vector_create(&r->product, &p->space, "dynamic relaxation", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 size_t relaxation_bytes(const Relaxation *r, const Particles *p)
 {
-  return 3 * vectors_bytes(p) + elastic_step_bytes(p) + preconditioner_bytes(&r->mass);
+  return 3 * vector_bytes(&p->space) + elastic_step_bytes(p) + preconditioner_bytes(&r->mass);
 }
 
 void relaxation_destroy(Relaxation *r)
 {
   elastic_step_destroy(&r->elastic);
   preconditioner_destroy(&r->mass);
-  vectors_free(r->velocity);
-  vectors_free(r->momentum);
-  vectors_free(r->product);
+  vector_destroy(&r->velocity);
+  vector_destroy(&r->momentum);
+  vector_destroy(&r->product);
 }
 
 /** Conjugate gradients for the elastic body, with the mass as preconditioner.
  *  @param[in,out] f  right-hand side; then what is left of it
  *  @param[in,out] v  the answer is added; a vector of unknowns
  *  @return the largest eigenvalue of K over M that shows in the steps taken */
-static double answer_elastically(Relaxation *r, Newton *n, double *const f[MOTIONS], double *const v[MOTIONS], int most,
-                                 double tolerance)
+static double answer_elastically(Relaxation *r, Newton *n, const Vector *f, const Vector *v, int most, double tolerance)
 {
   const Unknowns *u = &n->linear.unknowns;
-  const Domain *d = n->domain;
   double alpha[MOST_RENEWING], beta[MOST_RENEWING] = {0}, slope = 0, share = 1;
   const double first = unknowns_product_of_forces(u, f, f);
   int k = 0;
   for (; k < most && unknowns_product_of_forces(u, f, f) > tolerance * tolerance * first; ++k) {
-    preconditioner_apply(&r->mass, &n->linear, f, r->product);
-    const double next = unknowns_work(u, f, r->product), again = k ? next / slope : 0;
-    vectors_combine(d, again, r->velocity, 1, r->product);
+    preconditioner_apply(&r->mass, &n->linear, f, &r->product);
+    const double next = vector_inner(f, &r->product, 1), again = k ? next / slope : 0;
+    vector_combine(again, &r->velocity, 1, &r->product);
     slope = next;
-    linear_solver_apply(&n->linear, r->velocity, r->product);
+    linear_solver_apply(&n->linear, &r->velocity, &r->product);
     ++n->products;
-    unknowns_clear_rest(u, r->velocity);
-    const double curvature = unknowns_work(u, r->product, r->velocity);
+    unknowns_clear_rest(u, &r->velocity);
+    const double curvature = vector_inner(&r->product, &r->velocity, 1);
     if (!(curvature > 0)) break;
     /* The matrix of Lanczos' method (Golub and Van Loan, Matrix Computations, 10.2). */
     alpha[k] = curvature / slope + (k ? again / share : 0);
     beta[k] = k ? sqrt(again) / share : 0;
     share = slope / curvature;
-    vectors_combine(d, 1, v, share, r->velocity);
-    vectors_combine(d, 1, f, -share, r->product);
+    vector_combine(1, v, share, &r->velocity);
+    vector_combine(1, f, -share, &r->product);
   }
   return k ? tridiagonal_largest(alpha, beta, k) : 0;
 }
@@ -75,17 +72,17 @@ static int prepare(Relaxation *r, Newton *n, Error *error)
 {
   const Particles *p = n->domain->particles;
   uint64_t seed = 1;
-  if (preconditioner_prepare(&r->mass, &n->linear, r->velocity, r->product, error)) return BRECCIA_FAILURE;
-  vectors_clear(r->momentum, n->domain->particles);
-  vectors_clear(n->change, n->domain->particles);
-  for (int k = 0; k < p->motions; ++k)
+  if (preconditioner_prepare(&r->mass, &n->linear, &r->velocity, &r->product, error)) return BRECCIA_FAILURE;
+  vector_clear(&r->momentum);
+  vector_clear(&n->change);
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = 0; i < p->count; ++i)
-      r->momentum[k][p->place_of[i]] =
+      r->momentum.row[k][p->place_of[i]] =
           unknowns_length(&n->linear.unknowns, k) *
           (r->mass.any_pose ? preconditioner_probe(&r->mass, &n->linear, 1, k, p->place_of[i])
                             : random_uniform(&seed) - 0.5);
-  unknowns_gather(&n->linear.unknowns, r->momentum);
-  r->scale = answer_elastically(r, n, r->momentum, n->change, PROBES, 0) / highest;
+  unknowns_gather(&n->linear.unknowns, &r->momentum);
+  r->scale = answer_elastically(r, n, &r->momentum, &n->change, PROBES, 0) / highest;
   return BRECCIA_OK;
 }
 
@@ -93,19 +90,18 @@ static int prepare(Relaxation *r, Newton *n, Error *error)
 static void add_motions(Relaxation *r, Newton *n)
 {
   const Particles *p = n->domain->particles;
-  elastic_step_apply(&r->elastic, n->domain, n->change, r->product);
-  loading_change(n->loading, p, n->change, r->product);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) r->product[k][i] *= p->volume[i];
-  unknowns_gather(&n->linear.unknowns, r->product);
-  vectors_combine(n->domain, 1, n->force, 1, r->product);
+  elastic_step_apply(&r->elastic, n->domain, &n->change, &r->product);
+  loading_change(n->loading, p, n->change.row, r->product.row);
+  vector_weigh(&r->product, p->volume, &r->product);
+  unknowns_gather(&n->linear.unknowns, &r->product);
+  vector_combine(1, &n->force, 1, &r->product);
   ++n->products;
 }
 
-static void move(Newton *n, double *const v[MOTIONS])
+static void move(Newton *n, const Vector *v)
 {
-  vectors_combine(n->domain, 1, n->domain->particles->displacement, 1, v);
-  vectors_combine(n->domain, 1, n->moved, 1, v);
+  vector_combine(1, &n->domain->particles->displacement, 1, v);
+  vector_combine(1, &n->moved, 1, v);
 }
 
 /** Moves all particles as an elastic body would answer to loads and motions; `change` is how. The momentum is lost.
@@ -117,19 +113,19 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, int most, 
   elastic_step_prepare(&r->elastic, n->domain);
   if (r->prepared != time && prepare(r, n, error)) return BRECCIA_FAILURE;
   r->prepared = time;
-  vectors_clear(n->change, n->domain->particles);
-  unknowns_spread(u, time, n->change);
+  vector_clear(&n->change);
+  unknowns_spread(u, time, &n->change);
   if (moves) add_motions(r, n);
-  vectors_clear(n->change, n->domain->particles);
-  const double before = unknowns_product_of_forces(u, n->force, n->force);
-  vectors_combine(n->domain, 0, r->momentum, 1, n->force);
-  answer_elastically(r, n, n->force, n->change, most, 1e-2);
+  vector_clear(&n->change);
+  const double before = unknowns_product_of_forces(u, &n->force, &n->force);
+  vector_combine(0, &r->momentum, 1, &n->force);
+  answer_elastically(r, n, &n->force, &n->change, most, 1e-2);
   /* Where elastic stiffness is not symmetric, gradients may raise what is left. */
-  if (!(unknowns_product_of_forces(u, n->force, n->force) <= before)) vectors_clear(n->change, n->domain->particles);
-  *work = unknowns_work(u, r->momentum, n->change);
-  vectors_clear(r->momentum, n->domain->particles);
-  unknowns_spread(u, time, n->change);
-  move(n, n->change);
+  if (!(unknowns_product_of_forces(u, &n->force, &n->force) <= before)) vector_clear(&n->change);
+  *work = vector_inner(&r->momentum, &n->change, 1);
+  vector_clear(&r->momentum);
+  unknowns_spread(u, time, &n->change);
+  move(n, &n->change);
   if (n->log) text_add(n->log, "    elastic prediction: %lld evaluations\n", (long long)n->products);
   return BRECCIA_OK;
 }
@@ -138,21 +134,20 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, int most, 
 static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *damping, Error *error)
 {
   const Unknowns *u = &n->linear.unknowns;
-  const Domain *d = n->domain;
-  vectors_combine(d, (2 - *damping) / (2 + *damping), r->momentum, 2 / (2 + *damping), n->force);
-  preconditioner_apply(&r->mass, &n->linear, r->momentum, r->velocity);
-  vectors_combine(d, 1 / r->scale, r->velocity, 0, r->velocity);
-  const double twice_kinetic = unknowns_work(u, r->momentum, r->velocity);
-  const double before = unknowns_work(u, n->force, r->velocity);
-  unknowns_spread(u, NAN, r->velocity);
-  move(n, r->velocity);
+  vector_combine((2 - *damping) / (2 + *damping), &r->momentum, 2 / (2 + *damping), &n->force);
+  preconditioner_apply(&r->mass, &n->linear, &r->momentum, &r->velocity);
+  vector_combine(1 / r->scale, &r->velocity, 0, &r->velocity);
+  const double twice_kinetic = vector_inner(&r->momentum, &r->velocity, 1);
+  const double before = vector_inner(&n->force, &r->velocity, 1);
+  unknowns_spread(u, NAN, &r->velocity);
+  move(n, &r->velocity);
   const NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const double fall = before - unknowns_work(u, n->force, r->velocity);
+  const double fall = before - vector_inner(&n->force, &r->velocity, 1);
   const double quotient = twice_kinetic > 0 ? fall / twice_kinetic : 0;
   if (quotient > highest) { /* stiffer than the elastic body: steps of 1 must not become unstable */
     r->scale *= 1.5 * quotient / highest;
-    vectors_clear(r->momentum, n->domain->particles);
+    vector_clear(&r->momentum);
   }
   *damping = 2 * sqrt(fmin(fmax(quotient, 0), 0.9));
   return NEWTON_CONVERGED;
@@ -161,7 +156,7 @@ static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *da
 /** Forces out of balance over those that are exerted; 0 of roundings. */
 static double find_unbalanced(const Newton *n)
 {
-  const double force = sqrt(unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force));
+  const double force = sqrt(unknowns_product_of_forces(&n->linear.unknowns, &n->force, &n->force));
   if (force <= n->roundings) return 0;
   return n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
 }
@@ -176,11 +171,11 @@ static NewtonOutcome renew(Relaxation *r, Newton *n, double time, bool *helped, 
   if (predict(r, n, time, false, MOST_RENEWING, &before, error)) return NEWTON_FAILED;
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome == NEWTON_FAILED) return outcome;
-  const double after = outcome == NEWTON_CONVERGED ? unknowns_work(&n->linear.unknowns, n->force, n->change) : INFINITY;
+  const double after = outcome == NEWTON_CONVERGED ? vector_inner(&n->force, &n->change, 1) : INFINITY;
   *helped = fabs(after) < 0.5 * before;
   if (!*helped) {
-    vectors_combine(n->domain, -1, n->change, 0, n->change);
-    move(n, n->change);
+    vector_combine(-1, &n->change, 0, &n->change);
+    move(n, &n->change);
     outcome = newton_find_forces(n, time, error);
     if (n->log) text_add(n->log, "    given back: it is not what the body answers\n");
   }
@@ -252,12 +247,12 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   const Unknowns *u = &n->linear.unknowns;
   n->iterations = n->products = 0;
   n->indefinite = false;
-  vectors_clear(n->moved, n->domain->particles);
+  vector_clear(&n->moved);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  vectors_clear(n->change, n->domain->particles);
-  unknowns_spread(u, time, n->change);
-  const bool moves = unknowns_product_of_motions(u, n->change, n->change) > 0;
+  vector_clear(&n->change);
+  unknowns_spread(u, time, &n->change);
+  const bool moves = unknowns_product_of_motions(u, &n->change, &n->change) > 0;
   n->unbalanced_before = n->unbalanced = find_unbalanced(n);
   if (moves || n->unbalanced > n->spec->residual) {
     double work;
@@ -267,14 +262,14 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   }
   double damping = 0;
   Pace pace = {.look = LOOKED_AT_EVERY, .patience = LOOKED_AT_EVERY, .last = INFINITY};
-  vectors_clear(r->momentum, n->domain->particles);
+  vector_clear(&r->momentum);
   for (bool again = true; again;) {
     if ((outcome = relaxation_come_to_rest(r, n, &pace, time, most, &damping, error)) != NEWTON_CONVERGED)
       return outcome;
     if ((outcome = newton_take_lengths(n, time, &again, error)) != NEWTON_CONVERGED) return outcome;
     if (!again) break;
     n->unbalanced = find_unbalanced(n);
-    vectors_clear(r->momentum, n->domain->particles);
+    vector_clear(&r->momentum);
     damping = 0;
     pace.look = n->iterations + LOOKED_AT_EVERY;
     pace.last = INFINITY;

@@ -27,12 +27,12 @@
 
 typedef struct Relaxation {
   ElasticStep elastic;
-  Preconditioner mass;       /* its inverse, but for the scale */
-  double scale;              /* of M, for which steps of 1 are stable */
-  double prepared;           /* time of the run for which the mass was made; NAN: none yet */
-  double *velocity[MOTIONS]; /* displacements of a step */
-  double *momentum[MOTIONS]; /* a vector of unknowns */
-  double *product[MOTIONS];  /* to work with */
+  Preconditioner mass; /* its inverse, but for the scale */
+  double scale;        /* of M, for which steps of 1 are stable */
+  double prepared;     /* time of the run for which the mass was made; NAN: none yet */
+  Vector velocity;     /* displacements of a step */
+  Vector momentum;     /* a vector of unknowns */
+  Vector product;      /* to work with */
 } Relaxation;
 
 /** For the same domain, loads, tolerances and vectors as `newton`, which relaxes and has been created. `relaxation` is zero; destroy it in any case. */

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "loading/constraint.h"
 #include "solver/unknowns.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -60,41 +59,40 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   if (!rest->meant) return BRECCIA_OK;
   const Particles *p = s->domain->particles;
   const Unknowns unknowns = unknowns_of(s->domain, s->loading);
-  double *free_force[MOTIONS] = {0}, unbalanced = 0, acting = 0, squares = 0, held_squares = 0, external_squares = 0;
-  bool failed = !vectors_make(free_force, p, "forces out of balance", error);
-  for (int k = 0; k < p->motions && !failed; ++k) {
-    for (int64_t i = 0; i < p->places; ++i) free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
-  }
+  Vector free_force = {0};
+  double unbalanced = 0, acting = 0, squares = 0, held_squares = 0, external_squares = 0;
+  bool failed = !vector_create(&free_force, &p->space, "forces out of balance", error);
+  if (!failed) vector_weigh_sum(&free_force, p->volume, &p->internal, &p->external);
   for (int n = 0; !failed && n < s->loading->constraint_count; ++n) { /* what a support carries is balanced */
     const Constraint *c = &s->loading->constraints[n];
     for (int64_t at = 0; load_acts(s->loading, c->load) && at < c->load->selection.count; ++at) {
       const int32_t i = c->load->selection.places[at];
       if (constraint_leads(c, at) || constraint_is_open(c, at)) continue;
-      const double along = constraint_along(c, free_force, i);
-      constraint_add(c, free_force, i, -along);
+      const double along = constraint_along(c, free_force.row, i);
+      constraint_add(c, free_force.row, i, -along);
       for (int m = 0; s->type->rests && m < constraint_leaders(c); ++m)
-        constraint_add(c, free_force, constraint_leader(c, m), constraint_share(c, m, at) * along);
+        constraint_add(c, free_force.row, constraint_leader(c, m), constraint_share(c, m, at) * along);
       acting += fabs(along) / unknowns_length(&unknowns, c->row);
       held_squares += pow(along / unknowns_length(&unknowns, c->row), 2);
     }
   }
   if (!failed && s->type->rests) { /* what ties exert is not among the forces then */
-    unknowns_gather(&unknowns, free_force);
+    unknowns_gather(&unknowns, &free_force);
   }
   for (int64_t n = 0; !failed && n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double square = 0, external = 0;
-    for (int k = 0; k < p->motions; ++k) {
+    for (int k = 0; k < p->space.rows; ++k) {
       const double length = unknowns_length(&unknowns, k);
-      square += pow(free_force[k][i] / length, 2);
-      external += pow(p->external[k][i] / length, 2);
+      square += pow(free_force.row[k][i] / length, 2);
+      external += pow(p->external.row[k][i] / length, 2);
     }
     unbalanced += sqrt(square);
     acting += p->volume[i] * sqrt(external);
     squares += square;
     external_squares += p->volume[i] * p->volume[i] * external;
   }
-  vectors_free(free_force);
+  vector_destroy(&free_force);
   double of_strains = 0;
   if (!failed && !s->type->rests) failed = find_forces_of_strains(s, &of_strains, error) != BRECCIA_OK;
   if (failed) return BRECCIA_FAILURE;

@@ -138,8 +138,8 @@ static void resultants_collect(const Selection *selection, const Particles *p, d
   for (int64_t n = 0; n < selection->count; ++n)
     for (int k = 0; k < 3; ++k) {
       const int32_t i = selection->places[n];
-      sum[k] += p->volume[i] * p->external[k][i];
-      p->external[k][i] = 0;
+      sum[k] += p->volume[i] * p->external.row[k][i];
+      p->external.row[k][i] = 0;
     }
 }
 
@@ -168,13 +168,10 @@ int resultants_find(const Solver *s, Resultant *list, Error *error)
 {
   const Resultants *r = s->resultants;
   Particles scratch = *s->domain->particles;
-  bool failed = false;
-  for (int k = 0; k < MOTIONS; ++k) scratch.external[k] = NULL;
-  for (int k = 0; k < scratch.motions && !failed; ++k)
-    failed = !(scratch.external[k] = places_reserved(scratch.places, "resultant forces", error));
+  const bool failed = !vector_reserve(&scratch.external, &s->domain->particles->space, "resultant forces", error);
   for (int l = 0; l < s->loading->count; ++l) list[l] = (Resultant){.time = NAN};
   if (!failed) resultants_of_factors(s, &scratch, list);
-  for (int k = 0; k < MOTIONS; ++k) places_free(&scratch.external[k]);
+  vector_destroy(&scratch.external);
   if (failed) return BRECCIA_FAILURE;
   if (!r) return BRECCIA_OK;
   resultants_of_motions(s, r->now);

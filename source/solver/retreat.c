@@ -7,8 +7,8 @@
 static int32_t first_bad_particle(const Particles *p)
 {
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k)
-      if (!isfinite(p->internal[k][p->place_of[n]])) return p->place_of[n];
+    for (int k = 0; k < p->space.rows; ++k)
+      if (!isfinite(p->internal.row[k][p->place_of[n]])) return p->place_of[n];
   return p->place_of[0];
 }
 

@@ -211,7 +211,7 @@ void solver_destroy(Solver *s)
 
 static void zero_displacements(Particles *p)
 {
-  for (int k = 0; k < 3; ++k) memcpy(p->zero[k], p->displacement[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < 3; ++k) memcpy(p->zero[k], p->displacement.row[k], sizeof(double) * (size_t)p->places);
 }
 
 /** A stage that cannot be planned leaves the end of the one before as it was, so that a checkpoint of that can be taken up. */
@@ -293,10 +293,10 @@ static void list_kept(Solver *s, Kept kept, StateList *list)
   domain_state(s->domain, list);
   solver_state(s, list);
   for (int n = 0; n < list->count && kept != KEPT_ALL; ++n)
-    for (int k = 0; k < p->motions; ++k) {
+    for (int k = 0; k < p->space.rows; ++k) {
       const bool moves = body_moves_along(&s->domain->body, k);
       if ((kept == KEPT_BUT_MOTION || !moves) &&
-          (list->rows[n].values == p->displacement[k] || list->rows[n].values == p->velocity[k]))
+          (list->rows[n].values == p->displacement.row[k] || list->rows[n].values == p->velocity.row[k]))
         list->rows[n].role = STATE_COMMITTED;
     }
 }
@@ -477,32 +477,24 @@ int solver_advance(Solver *s, Text *warning, Error *error)
 }
 
 /** Adds -1/2 of the internal forces' work on changes of displacements, that is half of the work done on bonds. */
-static double solver_half_work(const Domain *d, double *const change[MOTIONS])
+static double solver_half_work(const Domain *d, const Vector *change)
 {
-  const Particles *p = d->particles;
-  double work = 0;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) work -= 0.5 * d->counted[i] * p->internal[k][i] * change[k][i];
-  return work;
+  return -0.5 * vector_inner_weighted(d->counted, &d->particles->internal, NULL, change);
 }
 
-int solver_take_motion(Solver *s, double *const displacement[MOTIONS], double *const velocity[MOTIONS], Error *error)
+int solver_take_motion(Solver *s, const Vector *displacement, const Vector *velocity, Error *error)
 {
   const Domain *d = s->domain;
   const Particles *p = d->particles;
-  double kinetic = 0, bonds = 0;
-  bool moved = false, kicked = false;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double before = velocity[k][i], now = p->velocity[k][i];
-      kicked |= now != before;
-      kinetic += 0.5 * p->inertia[k][i] * d->counted[i] * (now * now - before * before);
-      displacement[k][i] = p->displacement[k][i] - displacement[k][i];
-      moved |= displacement[k][i] != 0;
-    }
+  const Vector *v = &p->velocity;
+  double kinetic = 0.5 * (vector_inner_mass(d->counted, &p->inertia, v, v) -
+                          vector_inner_mass(d->counted, &p->inertia, velocity, velocity));
+  vector_combine(-1, displacement, 1, &p->displacement);
+  vector_combine(-1, velocity, 1, v);
+  const bool moved = !vector_is_zero(displacement), kicked = !vector_is_zero(velocity);
   if (!moved && !kicked) return BRECCIA_OK;
   if (s->type->rests) kinetic = 0; /* nothing moves there, whatever is written */
-  bonds = solver_half_work(d, displacement);
+  double bonds = solver_half_work(d, displacement);
   const int status = s->type->begin(s, error);
   if (status) return status;
   bonds += solver_half_work(d, displacement);

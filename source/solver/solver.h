@@ -202,8 +202,7 @@ int solver_advance(Solver *solver, Text *warning, Error *error);
 /** Takes over displacements and velocities that a program has written between steps: forces and accelerations follow,
  * and the work that the program has done is booked as external work.
  *  @param[in,out] displacement, velocity  as the last step left them; the former hold its changes afterwards */
-int solver_take_motion(Solver *solver, double *const displacement[MOTIONS], double *const velocity[MOTIONS],
-                       Error *error);
+int solver_take_motion(Solver *solver, const Vector *displacement, const Vector *velocity, Error *error);
 
 Energy solver_energy(const Solver *solver);
 

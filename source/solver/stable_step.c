@@ -4,7 +4,6 @@
 #include "base/team.h"
 #include "base/tridiagonal.h"
 #include "domain/tensor_copy.h"
-#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -15,146 +14,109 @@ enum { LEAST_ITERATIONS = 13, MOST_ITERATIONS = 60, VECTORS = 2 };
  * on the order of particles by 0.6 %, with 1e-6 by at most 1e-4. */
 static const double least_growth = 1e-6;
 
-static double mass_product(const Domain *d, double *const a[MOTIONS], double *const b[MOTIONS])
+static double mass_product(const Particles *p, const Vector *a, const Vector *b)
 {
-  const Particles *p = d->particles;
-  double sum = 0;
-  for (int64_t batch = 0; batch < d->batch_count; ++batch) { /* the same bits for any number of threads */
-    double part = 0;
-    for (int k = 0; k < p->motions; ++k)
-      for (int64_t i = d->batches[batch].first * SLICE; i < d->batches[batch].last * SLICE; ++i)
-        part += p->inertia[k][i] * p->volume[i] * a[k][i] * b[k][i];
-    sum += part;
-  }
-  return sum;
+  return vector_inner_mass(p->volume, &p->inertia, a, b);
 }
 
 /** Radius of gyration of a particle in rows of rotations; 1 in others. */
 static double radius(const Domain *d, int k, int64_t number)
 {
   const Particles *p = d->particles;
-  return k < ROTATION ? 1 : sqrt(p->rotary[p->place_of[number]] / p->density[p->place_of[number]]);
+  return k < p->space.rotation ? 1 : sqrt(p->rotary[p->place_of[number]] / p->density[p->place_of[number]]);
 }
 
-typedef struct Iteration { /* of Lanczos' method */
+/** An iteration of Lanczos' method. */
+typedef struct Iteration {
   Domain *domain;
-  const Evaluation *of;                  /* perturbed evaluation */
-  double *const *base_u, *const *base_f; /* displacements u and forces f(u); NULL: 0 */
-  double **previous, **current;
-  double h, alpha, beta;
+  const Evaluation *of;          /* perturbed evaluation */
+  const Vector *base_u, *base_f; /* displacements u and forces f(u); NULL: 0 */
+  const Vector *previous, *current;
+  double h;
 } Iteration;
 
+static void next_in_tile(void *context, int64_t first, int64_t last)
+{
+  const Iteration *n = context;
+  const Vector *force = n->of->internal, *inertia = &n->domain->particles->inertia;
+  for (int k = 0; k < force->space->rows; ++k)
+    for (int64_t i = first; i < last; ++i)
+      force->row[k][i] = ((n->base_f ? n->base_f->row[k][i] : 0) - force->row[k][i]) / (n->h * inertia->row[k][i]);
+}
+
 /** next = -(f(u + h current) - f(u)) / (h rho), in the place of the forces; large bodies have no memory for more vectors. */
-static void apply(void *context)
+static void apply(const Iteration *n)
 {
-  const Iteration *n = context;
-  Domain *d = n->domain;
-  for (int k = 0; k < d->particles->motions; ++k)
-    TEAM_FOR (i, d->particles->places)
-      n->of->displacement[k][i] = (n->base_u ? n->base_u[k][i] : 0) + n->h * n->current[k][i];
-  domain_forces(d, n->of);
-  for (int k = 0; k < d->particles->motions; ++k)
-    TEAM_FOR (i, d->particles->places)
-      n->of->internal[k][i] =
-          ((n->base_f ? n->base_f[k][i] : 0) - n->of->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
-}
-
-/** Next in the place of previous. */
-static void orthogonalize(void *context)
-{
-  const Iteration *n = context;
-  for (int k = 0; k < n->domain->particles->motions; ++k)
-    TEAM_FOR (i, n->domain->particles->places)
-      n->previous[k][i] = n->of->internal[k][i] - (n->alpha * n->current[k][i] + n->beta * n->previous[k][i]);
-}
-
-static void normalize(void *context)
-{
-  const Iteration *n = context;
-  for (int k = 0; k < n->domain->particles->motions; ++k)
-    TEAM_FOR (i, n->domain->particles->places) n->previous[k][i] /= n->beta;
-}
-
-static bool are_zero(const Particles *p, double *const *rows)
-{
-  bool zero = true;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places && zero; ++i) zero = rows[k][i] == 0;
-  return zero;
-}
-
-/** Reserves the rows of a vector; the system gives memory where something is written. */
-static bool reserve(double *vector[MOTIONS], const Particles *p, Error *error)
-{
-  for (int k = 0; k < MOTIONS; ++k) vector[k] = NULL;
-  for (int k = 0; k < p->motions; ++k)
-    if (!(vector[k] = places_reserved(p->places, "stable step", error))) return false;
-  return true;
+  if (n->base_u) vector_copy(n->of->displacement, n->base_u);
+  vector_combine(n->base_u ? 1 : 0, n->of->displacement, n->h, n->current);
+  domain_evaluate(n->domain, n->of);
+  vector_each_tile(n->current->space, next_in_tile, (void *)n);
 }
 
 /* To save memory, rows of the particles that are zero serve as vectors, and are cleared afterwards. */
 int stable_step(Domain *d, double *step, Error *error)
 {
   Particles *p = d->particles;
-  const int64_t places = p->places;
-  const int motions = p->motions;
+  const VectorSpace *space = &p->space;
+  static const char label[] = "stable step";
   TensorCopy tensors;
-  double *own_u[MOTIONS] = {0}, *own_f[MOTIONS] = {0}, *base[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
-  int failed = tensor_copy_create(&tensors, d, "stable step", error) != BRECCIA_OK;
-  failed |= !reserve(own_u, p, error) || !reserve(own_f, p, error) || !reserve(base, p, error);
-  for (int n = 0; n < VECTORS; ++n) failed |= !reserve(v[n], p, error);
+  Vector own_u = {0}, own_f = {0}, base = {0}, v[VECTORS] = {{0}};
+  int failed = tensor_copy_create(&tensors, d, label, error) != BRECCIA_OK;
+  failed |= !vector_reserve(&own_u, space, label, error) || !vector_reserve(&own_f, space, label, error) ||
+            !vector_reserve(&base, space, label, error);
+  for (int n = 0; n < VECTORS; ++n) failed |= !vector_reserve(&v[n], space, label, error);
   if (failed) goto done;
 
   /* Forces of elastic bodies follow from displacements, and are evaluated before steps begin. */
-  const bool lean = d->leaves_tensors, at_zero = lean && are_zero(p, p->displacement),
-             at_rest = at_zero && are_zero(p, p->velocity);
-  double *const *base_f = lean ? p->internal : base;
+  const bool lean = d->leaves_tensors, at_zero = lean && vector_is_zero(&p->displacement),
+             at_rest = at_zero && vector_is_zero(&p->velocity);
+  const Vector *base_f = lean ? &p->internal : &base;
   const bool elastic = domain_in_elastic_stage(d), old = d->tensors_are_old;
   tensor_copy_save(&tensors, d);
   domain_set_elastic_stage(d, true);
-  domain_evaluate(d, &(Evaluation){.displacement = p->displacement, .internal = base_f});
-  const bool bears_nothing = at_zero && are_zero(p, p->internal);
-  const Evaluation trial = {.displacement = at_zero ? p->displacement : own_u,
-                            .internal = bears_nothing ? p->internal : own_f};
+  domain_evaluate(d, &(Evaluation){.displacement = &p->displacement, .internal = base_f});
+  const bool bears_nothing = at_zero && vector_is_zero(&p->internal);
+  const Evaluation trial = {.displacement = at_zero ? &p->displacement : &own_u,
+                            .internal = bears_nothing ? &p->internal : &own_f};
   Iteration it = {.domain = d,
                   .of = &trial,
-                  .base_u = at_zero ? NULL : p->displacement,
+                  .base_u = at_zero ? NULL : &p->displacement,
                   .base_f = bears_nothing ? NULL : base_f,
-                  .previous = at_rest ? p->velocity : v[0],
-                  .current = v[1]};
+                  .previous = at_rest ? &p->velocity : &v[0],
+                  .current = &v[1]};
 
   uint64_t seed = 1;
-  for (int k = 0; k < motions; ++k)
+  for (int k = 0; k < space->rows; ++k)
     for (int64_t n = 0; n < p->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      it.current[k][p->place_of[n]] = body_moves_along(&d->body, k) ? r / radius(d, k, n) : 0;
+      it.current->row[k][p->place_of[n]] = body_moves_along(&d->body, k) ? r / radius(d, k, n) : 0;
     }
-  double norm = sqrt(mass_product(d, it.current, it.current));
+  double norm = sqrt(mass_product(p, it.current, it.current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;
-  for (int k = 0; k < motions; ++k)
-    for (int64_t i = 0; i < places; ++i) it.current[k][i] /= norm;
+  vector_scale(it.current, 1 / norm);
   /* Displacements of 1e-7 spacings: far above roundings, far below where anything is non-linear. */
   it.h = 1e-7 * d->body.largest_spacing * norm;
   for (int n = 0; n < MOST_ITERATIONS; ++n) {
-    team_run(apply, &it);
-    it.alpha = alpha[n] = mass_product(d, trial.internal, it.current);
-    it.beta = beta[n];
-    team_run(orthogonalize, &it);
-    it.beta = beta[n + 1] = sqrt(mass_product(d, it.previous, it.previous));
+    apply(&it);
+    alpha[n] = mass_product(p, trial.internal, it.current);
+    vector_combine(-beta[n], it.previous, -alpha[n],
+                   it.current); /* the next vector, in the place of the previous one */
+    vector_combine(1, it.previous, 1, trial.internal);
+    beta[n + 1] = sqrt(mass_product(p, it.previous, it.previous));
     largest = tridiagonal_largest(alpha, beta, n + 1);
     if (!(beta[n + 1] > 1e-9 * fabs(largest)) || (n >= LEAST_ITERATIONS && largest - before < least_growth * largest))
       break;
     before = largest;
-    team_run(normalize, &it);
-    double **spare = it.previous;
+    vector_scale(it.previous, 1 / beta[n + 1]);
+    const Vector *spare = it.previous;
     it.previous = it.current;
     it.current = spare;
   }
   domain_set_elastic_stage(d, elastic);
   tensor_copy_restore(&tensors, d);
-  if (at_zero) vectors_clear(p->displacement, p);
-  if (bears_nothing) vectors_clear(p->internal, p);
-  if (at_rest) vectors_clear(p->velocity, p);
+  if (at_zero) vector_clear(&p->displacement);
+  if (bears_nothing) vector_clear(&p->internal);
+  if (at_rest) vector_clear(&p->velocity);
   domain_show_states(d, NULL); /* bonds that break next are judged by what particles show */
   d->tensors_are_old = old || d->leaves_tensors;
   if (!isfinite(largest) || largest < 0)
@@ -166,9 +128,9 @@ int stable_step(Domain *d, double *step, Error *error)
     *step = 2 / sqrt(largest * 1.005 + forces_eigenvalue(&d->forces));
 done:
   tensor_copy_destroy(&tensors);
-  vectors_free(own_u);
-  vectors_free(own_f);
-  vectors_free(base);
-  for (int n = 0; n < VECTORS; ++n) vectors_free(v[n]);
+  vector_destroy(&own_u);
+  vector_destroy(&own_f);
+  vector_destroy(&base);
+  for (int n = 0; n < VECTORS; ++n) vector_destroy(&v[n]);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }

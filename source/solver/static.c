@@ -2,7 +2,6 @@
  * relaxation (relaxation.h), and bonds that break in between, the most loaded first. Histories of loads run in the time of the stage, which need not be one of a clock. */
 #include "solver/static.h"
 #include "solver/pieces.h"
-#include "solver/vectors.h"
 
 #include "base/memory.h"
 #include "base/team.h"
@@ -113,7 +112,7 @@ static void destroy(Solver *run)
   relaxation_destroy(&s->relaxation);
   newton_destroy(&s->newton);
   state_copy_destroy(&s->whole);
-  vectors_free(s->way.moved);
+  vector_destroy(&s->way.moved);
   control_destroy(&s->control);
   increment_destroy(&s->increment);
   pressing_destroy(&s->pressing);
@@ -141,7 +140,7 @@ static int create(Solver *run, Error *error)
     return BRECCIA_FAILURE;
   const bool softens = s->spec->control ? domain_bonds_may_soften(run->domain) : domain_may_soften(run->domain);
   if (softens && !run->domain->forces.count && !s->newton.relaxes &&
-      !vectors_make(s->newton.change_forces, run->domain->particles, "works", error))
+      !vector_create(&s->newton.change_forces, &run->domain->particles->space, "works", error))
     return BRECCIA_FAILURE;
   return s->newton.relaxes ? relaxation_create(&s->relaxation, &s->newton, error) : BRECCIA_OK;
 }
@@ -263,7 +262,7 @@ static int measure(Solver *run, StepCost *cost, Error *error)
   if (jumps) cost->bytes += (double)descent_bytes(&s->descent, s->domain->particles);
   if (jumps || s->newton.relaxes) cost->bytes += (double)relaxation_bytes(&s->relaxation, s->domain->particles);
   if (static_may_go_on_again(s) || static_may_slide(s))
-    cost->bytes += (double)(solver_kept_bytes(run, KEPT_ALL) + vectors_bytes(s->domain->particles));
+    cost->bytes += (double)(solver_kept_bytes(run, KEPT_ALL) + vector_bytes(&s->domain->particles->space));
   return newton_measure(&s->newton, cost, error);
 }
 
@@ -292,7 +291,7 @@ static int begin(Solver *run, Error *error)
   if (run->loose && check_hold(run, s->spec, error)) return BRECCIA_USER_ERROR;
   run->ledger.damping_work += run->ledger.kinetic; /* of the stage before: it is at rest now */
   run->ledger.kinetic = 0;
-  vectors_clear(p->velocity, p);
+  vector_clear(&p->velocity);
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain, NULL);

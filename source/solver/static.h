@@ -32,7 +32,7 @@ static inline bool static_hands_over(const StaticSpec *spec)
 /** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
  *  two, whatever was tried on the way. */
 typedef struct Way {
-  double *moved[MOTIONS]; /* made where an increment is solved again; else what Newton's method has moved is all */
+  Vector moved; /* made where an increment is solved again; else what Newton's method has moved is all */
   double bonds, given_off, sudden; /* works booked of it */
 } Way;
 

@@ -1,6 +1,5 @@
 /* What an increment of statics leads to besides: bonds that break, and control of zero-energy modes that fades. */
 #include "solver/static.h"
-#include "solver/vectors.h"
 
 #include <math.h>
 #include <string.h>
@@ -64,9 +63,9 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, TryBy *way, Error *e
  *  @param[in] first  it was the first on this way */
 static int try_again(Static *s, bool first, TryBy by, NewtonOutcome *outcome, Error *error)
 {
-  if (!s->way.moved[0] && !vectors_make(s->way.moved, s->domain->particles, "static solver", error))
+  if (!s->way.moved.row[0] && !vector_create(&s->way.moved, &s->domain->particles->space, "static solver", error))
     return BRECCIA_FAILURE;
-  if (first) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
+  if (first) vector_combine(0, &s->way.moved, 1, &s->newton.moved);
   *outcome = static_try(s, s->clock->time, (Try){.again = true, .by = by}, error);
   return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
 }

@@ -81,7 +81,8 @@ void static_note_motion(Static *s)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double square = 0;
-    for (int k = 0; k < 3 && s->newton.moved[k]; ++k) square += s->newton.moved[k][i] * s->newton.moved[k][i];
+    for (int k = 0; k < 3 && s->newton.moved.row[k]; ++k)
+      square += s->newton.moved.row[k][i] * s->newton.moved.row[k][i];
     largest = fmax(largest, square);
   }
   s->travelled += sqrt(largest);

@@ -5,7 +5,6 @@
 #include "loading/one_sided.h"
 #include "loading/support.h"
 #include "solver/resultants.h"
-#include "solver/vectors.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,19 +13,16 @@
 /** Works by the trapezium rule. Forces out of balance at the beginning, of a load that was there already or of bonds that have broken, do work that the
  *  body gives off on its way to rest.
  *  @param[in] moved  on the whole way */
-static void book(Static *s, double *const moved[MOTIONS])
+static void book(Static *s, const Vector *moved)
 {
   const Particles *p = s->domain->particles;
   const Increment *begin = &s->increment;
-  double *const *before = s->newton.change; /* forces out of balance: of corrections nothing is wanted any more */
+  const Vector *before = &s->newton.change; /* forces out of balance: of corrections nothing is wanted any more */
   const double bonds = increment_bond_work(&s->increment, moved);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
+  vector_weigh_sum(before, p->volume, &begin->internal, &begin->external);
   one_sided_add_pressed(s->loading, 1, before);
   unknowns_gather(&s->newton.linear.unknowns, before);
-  const double given_off = 0.5 * (unknowns_work(&s->newton.linear.unknowns, before, moved) +
-                                  unknowns_work(&s->newton.linear.unknowns, s->newton.force, moved));
+  const double given_off = 0.5 * (vector_inner(before, moved, 1) + vector_inner(&s->newton.force, moved, 1));
   s->ledger->bond_work += bonds - s->way.bonds;
   s->ledger->damping_work += given_off - s->way.given_off;
   s->ledger->external_work += bonds + given_off - s->way.bonds - s->way.given_off;
@@ -36,7 +32,7 @@ static void book(Static *s, double *const moved[MOTIONS])
   s->way.given_off = given_off;
 }
 
-static void book_sudden(Static *s, double *const moved[MOTIONS])
+static void book_sudden(Static *s, const Vector *moved)
 {
   const double sudden = increment_sudden_work(&s->increment, moved);
   s->ledger->bond_work += sudden - s->way.sudden;
@@ -53,12 +49,10 @@ static bool is_coarse(const Static *s, double length)
 {
   const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of the increment of the deck */
   const Particles *p = s->domain->particles;
-  double work = 0;
-  if (!s->newton.change_forces[0] || s->takes_coarse || length / 2 < least * static_whole_increment(s->spec))
+  if (!s->newton.change_forces.row[0] || s->takes_coarse || length / 2 < least * static_whole_increment(s->spec))
     return false;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i)
-      work -= 0.5 * s->domain->counted[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
+  const double work =
+      -0.5 * vector_inner_weighted(s->domain->counted, &s->increment.internal, &p->internal, &s->newton.moved);
   const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
   return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
 }
@@ -73,7 +67,7 @@ static NewtonOutcome relax(Static *s, double end, Error *error)
   Newton *n = &s->newton;
   const bool always = n->relaxes;
   n->relaxes = true;
-  if (!s->relaxation.velocity[0] && relaxation_create(&s->relaxation, n, error)) return NEWTON_FAILED;
+  if (!s->relaxation.velocity.row[0] && relaxation_create(&s->relaxation, n, error)) return NEWTON_FAILED;
   n->linear.elastic = &s->relaxation.elastic;
   if (n->log && !always) text_add(n->log, "  by dynamic relaxation\n");
   const NewtonOutcome outcome = relaxation_solve(&s->relaxation, n, end, s->spec->relaxation_iterations, error);
@@ -86,7 +80,7 @@ static NewtonOutcome descend(Static *s, double end, Error *error)
 {
   enum { LONGER = 10 }; /* than by tangents */
   Newton *n = &s->newton;
-  if (!s->descent.room[0] && descent_create(&s->descent, n, error)) return NEWTON_FAILED;
+  if (!s->descent.room.row[0] && descent_create(&s->descent, n, error)) return NEWTON_FAILED;
   if (n->log) text_add(n->log, "  by secants\n");
   return descent_solve(&s->descent, n, end, LONGER * s->spec->newton.iterations, error);
 }
@@ -134,13 +128,13 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     if (how.again) newton_apply_loads(&s->newton, s->clock->time);
     return outcome;
   }
-  if (how.again) vectors_combine(s->domain, 1, s->way.moved, 1, s->newton.moved);
+  if (how.again) vector_combine(1, &s->way.moved, 1, &s->newton.moved);
   if (static_may_slide(s)) static_note_motion(s);
-  book(s, how.again ? s->way.moved : s->newton.moved);
+  book(s, how.again ? &s->way.moved : &s->newton.moved);
   one_sided_accept(s->loading);
-  if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
-  increment_accept(&s->increment, s->newton.moved);
-  book_sudden(s, how.again ? s->way.moved : s->newton.moved);
+  if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved.row);
+  increment_accept(&s->increment, &s->newton.moved);
+  book_sudden(s, how.again ? &s->way.moved : &s->newton.moved);
   return outcome;
 }
 
@@ -488,7 +482,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
     tell_refused(s, outcome, settled, slides);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
-      if (s->spec->control && s->newton.change_forces[0] && !s->takes_coarse) { /* try a long increment */
+      if (s->spec->control && s->newton.change_forces.row[0] && !s->takes_coarse) { /* try a long increment */
         s->takes_coarse = true;
         s->next = static_whole_increment(s->spec);
         continue;

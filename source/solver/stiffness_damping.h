@@ -6,12 +6,12 @@
 #include "domain/tensor_copy.h"
 
 typedef struct StiffnessDamping {
-  double time;            /* b; 0: there is none, and no array */
-  TensorCopy tensors;     /* of the step, which evaluations of elastic forces overwrite */
-  double *was[MOTIONS];   /* displacements before the step */
-  double *force[MOTIONS]; /* elastic forces per volume */
-  double *drag[MOTIONS];  /* [places] force per volume against the motion, as found last */
-  double *left[MOTIONS];  /* internal forces, while the drag is subtracted from those of the particles */
+  double time;        /* b; 0: there is none, and no array */
+  TensorCopy tensors; /* of the step, which evaluations of elastic forces overwrite */
+  Vector was;         /* displacements before the step */
+  Vector force;       /* elastic forces per volume */
+  Vector drag;        /* [places] force per volume against the motion, as found last */
+  Vector left;        /* internal forces, while the drag is subtracted from those of the particles */
 } StiffnessDamping;
 
 /** `damping` is zero; destroy it in any case. */

@@ -36,27 +36,26 @@ int64_t unknowns_count(const Unknowns *unknowns, Error *error);
 
 /** Gives a change of displacements its values where it is not free, by those that are: T. By one thread.
  *  @param[in] time  displacements held and change together are then as prescribed at this time of the run; NaN: nothing prescribed moves */
-void unknowns_spread(const Unknowns *unknowns, double time, double *const v[MOTIONS]);
+void unknowns_spread(const Unknowns *unknowns, double time, const Vector *v);
 
 /** The same with what motions of controlled loads do where their factor grows by 1, and nothing else that is prescribed. By one thread. */
-void unknowns_spread_controlled(const Unknowns *unknowns, double *const v[MOTIONS]);
+void unknowns_spread_controlled(const Unknowns *unknowns, const Vector *v);
 
 /** Forces on all displacements to forces on the free ones: those on tied ones are handed on, all others taken off.
  *  @param[in,out] f  forces, not forces per volume */
-void unknowns_gather(const Unknowns *unknowns, double *const f[MOTIONS]);
+void unknowns_gather(const Unknowns *unknowns, const Vector *f);
 
 /** Sets what is not free to 0: the projection on vectors of unknowns. */
-void unknowns_clear_rest(const Unknowns *unknowns, double *const v[MOTIONS]);
+void unknowns_clear_rest(const Unknowns *unknowns, const Vector *v);
 
 /** Weight of a row of motions beside others, as a length: 1 of displacements. */
 static inline double unknowns_length(const Unknowns *unknowns, int row)
 {
-  return row < ROTATION ? 1 : unknowns->length;
+  return unknowns->domain->particles->space.row[row].kind == ROW_DISPLACEMENT ? 1 : unknowns->length;
 }
 
-/** Sums of products, the same bits for any number of threads: of forces with motions, which is work; of forces with forces; of motions with motions. */
-double unknowns_work(const Unknowns *unknowns, double *const force[MOTIONS], double *const motion[MOTIONS]);
-double unknowns_product_of_forces(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
-double unknowns_product_of_motions(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
+/** Sums of products, the same bits for any number of threads: of forces with forces; of motions with motions. */
+double unknowns_product_of_forces(const Unknowns *unknowns, const Vector *a, const Vector *b);
+double unknowns_product_of_motions(const Unknowns *unknowns, const Vector *a, const Vector *b);
 
 #endif

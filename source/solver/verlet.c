@@ -8,13 +8,9 @@ void explicit_step_back(Explicit *s)
 {
   const Particles *p = s->domain->particles;
   const double dt = s->clock->time_step, c = explicit_mass_damping(s);
-  for (int r = 0; r < s->row_count; ++r) {
-    const int k = s->rows[r];
-    for (int64_t i = 0; i < p->places; ++i) {
-      p->displacement[k][i] -= dt * p->velocity[k][i];
-      p->velocity[k][i] = (p->velocity[k][i] - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
-    }
-  }
+  const double back = 1 / (1 - 0.5 * c * dt);
+  vector_combine(1, &p->displacement, -dt, &p->velocity);
+  vector_combine(back, &p->velocity, -0.5 * dt * back, &s->acceleration);
 }
 
 BRECCIA_CLONES
@@ -28,17 +24,18 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
     for (int64_t i = first; i < last; i += LANES) {
-      Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
-      Lanes fe = lanes_load(p->external[k] + i);
-      Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
+      Lanes v = lanes_load(p->velocity.row[k] + i), fi = lanes_load(p->internal.row[k] + i);
+      Lanes fe = lanes_load(p->external.row[k] + i);
+      Lanes gain = lanes_load(s->acceleration.row[k] + i) - c * v,
+            drag = fi + fe - lanes_load(p->inertia.row[k] + i) * gain;
       Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(counted + i);
       bond -= fi * work;
       external += fe * work;
       damping += drag * work;
-      between -= lanes_load(p->inertia[k] + i) * lanes_load(counted + i) * gain * gain;
-      if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
-      lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
-      lanes_store(p->velocity[k] + i, half);
+      between -= lanes_load(p->inertia.row[k] + i) * lanes_load(counted + i) * gain * gain;
+      if (k < p->space.rotation) still = lanes_least(still, -lanes_absolute(du));
+      lanes_store(p->displacement.row[k] + i, lanes_load(p->displacement.row[k] + i) + du);
+      lanes_store(p->velocity.row[k] + i, half);
     }
   }
   double *sums = s->sums[batch];
@@ -63,11 +60,11 @@ static void kick(Explicit *s, int64_t batch)
   for (int r = 0; r < s->row_count; ++r) {
     const int k = s->rows[r];
     for (int64_t i = first; i < last; i += LANES) {
-      Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
-      Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->inertia[k] + i);
+      Lanes half = lanes_load(p->velocity.row[k] + i), fi = lanes_load(p->internal.row[k] + i);
+      Lanes fe = lanes_load(p->external.row[k] + i), density = lanes_load(p->inertia.row[k] + i);
       Lanes volume = lanes_load(counted + i), force = fi + fe, size = local * lanes_absolute(force);
       Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
-      if (stiff) drag += lanes_load(s->viscous.drag[k] + i);
+      if (stiff) drag += lanes_load(s->viscous.drag.row[k] + i);
       Lanes acceleration = (force - drag) / density, end = (half + one_half * dt * acceleration) * slow;
       Lanes work = one_half * dt * half * volume;
       bond -= fi * work;
@@ -76,8 +73,8 @@ static void kick(Explicit *s, int64_t batch)
       kinetic += one_half * density * volume * end * end;
       Lanes gain = acceleration - viscous * end;
       between += density * volume * gain * gain;
-      lanes_store(s->acceleration[k] + i, acceleration);
-      lanes_store(p->velocity[k] + i, end);
+      lanes_store(s->acceleration.row[k] + i, acceleration);
+      lanes_store(p->velocity.row[k] + i, end);
     }
   }
   double *sums = s->sums[batch];

@@ -11,19 +11,19 @@ static inline void shake(breccia_model *m, double by)
   Particles *p = m->domain.particles;
   uint64_t seed = 7;
   for (int k = 0; k < m->domain.body.dimensions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
+    for (int64_t n = 0; n < p->count; ++n) p->displacement.row[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
 }
 
-/** @param[out] force  arrays of places, which `drop` gives back */
-static inline void find_beside(breccia_model *m, double *force[3])
+/** @param[out] force  a vector, which `drop` gives back */
+static inline void find_beside(breccia_model *m, Vector *force)
 {
-  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
+  assert_true(vector_create(force, &m->domain.particles->space, "test", NULL));
   domain_forces_beside(&m->domain, NULL, force);
 }
 
-static inline void drop(double *force[3])
+static inline void drop(Vector *force)
 {
-  for (int k = 0; k < 3; ++k) places_free(&force[k]);
+  vector_destroy(force);
 }
 
 #endif

@@ -31,9 +31,10 @@ static inline void disturb(const breccia_model *model, double size, uint64_t see
 {
   const Particles *p = model->domain.particles;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k)
-      if (k >= ROTATION || k < model->domain.body.dimensions)
-        p->displacement[k][p->place_of[n]] = 2 * (random_uniform(&seed) - 0.5) * size * (k < ROTATION ? 0.1 : 1);
+    for (int k = 0; k < p->space.rows; ++k)
+      if (k >= p->space.rotation || k < model->domain.body.dimensions)
+        p->displacement.row[k][p->place_of[n]] =
+            2 * (random_uniform(&seed) - 0.5) * size * (k < p->space.rotation ? 0.1 : 1);
 }
 
 #endif

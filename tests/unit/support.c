@@ -72,8 +72,8 @@ void deform_uniformly(breccia_model *model, const double f[9])
   for (int64_t n = 0; n < p->count; ++n) {
     int32_t i = p->place_of[n];
     for (int k = 0; k < 3; ++k) {
-      p->displacement[k][i] = 0;
-      for (int j = 0; j < 3; ++j) p->displacement[k][i] += (f[3 * k + j] - (k == j)) * p->position[j][i];
+      p->displacement.row[k][i] = 0;
+      for (int j = 0; j < 3; ++j) p->displacement.row[k][i] += (f[3 * k + j] - (k == j)) * p->position[j][i];
     }
   }
 }
@@ -218,14 +218,14 @@ Sums sums_of(const breccia_model *m)
     s.volume += p->volume[i];
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
-      s.momentum[k] += mass * p->velocity[k][i];
-      s.external[k] += p->volume[i] * p->external[k][i];
-      s.moved[k] += p->volume[i] * p->displacement[k][i];
-      s.turn[k] += mass * ((p->position[a][i] + p->displacement[a][i]) * p->velocity[b][i] -
-                           (p->position[b][i] + p->displacement[b][i]) * p->velocity[a][i]);
+      s.momentum[k] += mass * p->velocity.row[k][i];
+      s.external[k] += p->volume[i] * p->external.row[k][i];
+      s.moved[k] += p->volume[i] * p->displacement.row[k][i];
+      s.turn[k] += mass * ((p->position[a][i] + p->displacement.row[a][i]) * p->velocity.row[b][i] -
+                           (p->position[b][i] + p->displacement.row[b][i]) * p->velocity.row[a][i]);
     }
-    for (int k = ROTATION; k < p->motions; ++k)
-      s.turn[p->motions == 4 ? 2 : k - ROTATION] += p->rotary[i] * p->volume[i] * p->velocity[k][i];
+    for (int k = p->space.rotation; k < p->space.rows; ++k)
+      s.turn[p->space.row[k].axis] += p->rotary[i] * p->volume[i] * p->velocity.row[k][i];
   }
   for (int k = 0; k < 3; ++k) s.moved[k] /= s.volume;
   return s;

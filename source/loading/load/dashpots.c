@@ -170,11 +170,11 @@ static void brake(Load *load, Particles *p, const LoadMotion *motion, double tim
     const int32_t i = load->selection.places[n];
     for (int k = 0; k < 3; ++k) {
       const double rate = rate_of(own, k, n), density = p->density[i];
-      const double given = rate * own->outcrop[k], force = p->internal[k][i] + p->external[k][i] + given;
+      const double given = rate * own->outcrop[k], force = p->internal.row[k][i] + p->external.row[k][i] + given;
       double v = motion->velocity[k][i];
       if (!(load->held[n] & 1 << k)) v = (v + lag * force / density) / (1 + lag * (motion->damping + rate / density));
       own->trial[k][n] = -rate * v;
-      p->external[k][i] += given - rate * v;
+      p->external.row[k][i] += given - rate * v;
     }
   }
 }

@@ -97,5 +97,5 @@ void face_push(const Face *face, Particles *p, const double traction[3])
 {
   TEAM_FOR (n, face->count)
     for (int k = 0; k < 3; ++k)
-      if (traction[k] != 0) p->external[k][face->place[n]] += traction[k] * face->per_volume[n];
+      if (traction[k] != 0) p->external.row[k][face->place[n]] += traction[k] * face->per_volume[n];
 }

@@ -72,7 +72,8 @@ static Motion motion_of(const Load *load, const Particles *p)
   double moment[3] = {0}, mass = 0;
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t i = load->selection.places[n];
-    for (int k = 0; k < 3; ++k) moment[k] += p->density[i] * p->volume[i] * (p->position[k][i] + p->displacement[k][i]);
+    for (int k = 0; k < 3; ++k)
+      moment[k] += p->density[i] * p->volume[i] * (p->position[k][i] + p->displacement.row[k][i]);
     mass += p->density[i] * p->volume[i];
   }
   for (int k = 0; k < 3; ++k) {
@@ -86,7 +87,7 @@ static Motion motion_of(const Load *load, const Particles *p)
 static void velocity_at(const Motion *m, const Particles *p, int32_t i, double velocity[3])
 {
   double arm[3];
-  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement[k][i] - m->centre[k];
+  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement.row[k][i] - m->centre[k];
   for (int k = 0; k < 3; ++k)
     velocity[k] =
         m->translation[k] + m->rotation[(k + 1) % 3] * arm[(k + 2) % 3] - m->rotation[(k + 2) % 3] * arm[(k + 1) % 3];
@@ -99,9 +100,9 @@ static bool begin(Load *load, Particles *p)
     const int32_t i = load->selection.places[n];
     double v[3];
     velocity_at(&m, p, i, v);
-    for (int k = 0; k < 3; ++k) p->velocity[k][i] = v[k];
-    for (int k = ROTATION; k < p->motions && particles_turn(p, i); ++k)
-      p->velocity[k][i] = m.rotation[p->motions == 4 ? 2 : k - ROTATION];
+    for (int k = 0; k < 3; ++k) p->velocity.row[k][i] = v[k];
+    for (int k = p->space.rotation; k < p->space.rows && particles_turn(p, i); ++k)
+      p->velocity.row[k][i] = m.rotation[p->space.row[k].axis];
   }
   return true;
 }

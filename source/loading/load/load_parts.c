@@ -30,7 +30,7 @@ void load_push(const Load *load, Particles *p, const double uniform[3], const do
     const int32_t place = load->selection.places[n];
     for (int k = 0; k < 3; ++k)
       if (uniform[k] != 0 || per_density[k] != 0)
-        p->external[k][place] += uniform[k] + per_density[k] * p->density[place];
+        p->external.row[k][place] += uniform[k] + per_density[k] * p->density[place];
   }
 }
 
@@ -54,26 +54,26 @@ void load_constrain(Load *load, const LoadMaking *making, const double d[3], dou
 void load_constrain_rotation(Load *load, const LoadMaking *making, int k, double value, int order)
 {
   const double axis[3] = {k == 0, k == 1, k == 2};
-  constrain(load, making, ROTATION, axis, value, order);
+  constrain(load, making, making->body->particles.space.rotation, axis, value, order);
 }
 
 int load_turning(const Particles *p, int axis[3])
 {
   int count = 0;
   for (int k = 0; k < 3; ++k)
-    if (p->motions == 6 || (p->motions == 4 && k == 2)) axis[count++] = k;
+    if (p->space.rows == 6 || (p->space.rows == 4 && k == 2)) axis[count++] = k;
   return count;
 }
 
 int load_rotations(const Load *load, const LoadMaking *making, int axis[3])
 {
   const Particles *p = &making->body->particles;
-  if (p->motions == ROTATION)
+  if (!particles_have_rotations(p))
     return node_error(making->reader->document, load->node, making->reader->error,
                       "%s: the particles of this body have no rotations; those of `formulation: micropolar` do",
                       load->node->key),
            -1;
-  for (int k = 0; k < 2 && p->motions == 4; ++k)
+  for (int k = 0; k < 2 && p->space.rows == 4; ++k)
     if (!isnan(load->value->point[k]) && load->value->point[k] != 0)
       return node_error(making->reader->document, load->node, making->reader->error,
                         "%s: the body is plane and turns about z only: [0, 0, value]", load->node->key),

@@ -13,8 +13,8 @@ static void force(const Load *load, Particles *p, double factor)
 {
   TEAM_FOR (n, load->selection.count) {
     const int32_t place = load->selection.places[n];
-    for (int k = ROTATION; k < p->motions; ++k)
-      p->external[k][place] += factor * load->value->point[p->motions == 4 ? 2 : k - ROTATION] / load->volume;
+    for (int k = p->space.rotation; k < p->space.rows; ++k)
+      p->external.row[k][place] += factor * load->value->point[p->space.row[k].axis] / load->volume;
   }
 }
 

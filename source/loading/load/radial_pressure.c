@@ -88,7 +88,7 @@ static void force(const Load *load, Particles *p, double factor)
     const int32_t place = load->selection.places[k];
     double n[3], distance;
     radial_pressure_outwards(s, p, place, n, &distance);
-    for (int c = 0; c < 3; ++c) p->external[c][place] += per_volume * n[c];
+    for (int c = 0; c < 3; ++c) p->external.row[c][place] += per_volume * n[c];
   }
 }
 

@@ -65,7 +65,7 @@ static int create(Load *load, const LoadMaking *making)
   int status = BRECCIA_FAILURE;
   if (held) {
     *own = (Reaction){.loading = making->loading, .name = load->value->text, .stage = load->first};
-    own->motions = &p->motions;
+    own->motions = &p->space.rows;
     status = select_held(load, making, held);
   }
   free(held);
@@ -73,7 +73,7 @@ static int create(Load *load, const LoadMaking *making)
   if (load->spec->on.node)
     return node_error(making->reader->document, section_node(load->spec, "on"), error,
                       "on: 'reaction of' acts on the particles that '%s' held; leave 'on' out", own->name);
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     if (!(own->force[k] = memory_zeroed((size_t)load->selection.count, sizeof(double), "reactions", error)))
       return BRECCIA_FAILURE;
   for (int l = 0; l < making->loading->count; ++l) {
@@ -93,7 +93,7 @@ static void destroy(Load *load)
 /** Adds a force along the direction of a constraint to the particle of index n of the load. */
 static void add_along(Reaction *own, const Particles *p, const Constraint *c, int64_t n, double along)
 {
-  for (int k = 0; k < 3 && c->row + k < p->motions; ++k) own->force[c->row + k][n] += along * c->direction[k];
+  for (int k = 0; k < 3 && c->row + k < p->space.rows; ++k) own->force[c->row + k][n] += along * c->direction[k];
 }
 
 /** Adds what the leaders of a platen bear when the force on its n-th particle is `along`: the plate takes no moment
@@ -124,8 +124,8 @@ static bool begin(Load *load, Particles *p)
       if (constraint_leads(c, m) || constraint_is_open(c, m)) continue;
       while (all->places[n] != i) ++n; /* numbers ascend in both */
       double along = 0;
-      for (int k = 0; k < 3 && c->row + k < p->motions; ++k)
-        along -= (p->internal[c->row + k][i] + p->external[c->row + k][i]) * c->direction[k];
+      for (int k = 0; k < 3 && c->row + k < p->space.rows; ++k)
+        along -= (p->internal.row[c->row + k][i] + p->external.row[c->row + k][i]) * c->direction[k];
       add_along(own, p, c, n, along);
       add_to_leaders(own, p, c, all, m, along);
     }
@@ -138,7 +138,7 @@ static void force(const Load *load, Particles *p, double factor)
   const Reaction *own = load->own;
   TEAM_FOR (n, load->selection.count) {
     const int32_t i = load->selection.places[n];
-    for (int k = 0; k < p->motions; ++k) p->external[k][i] += factor * own->force[k][n];
+    for (int k = 0; k < p->space.rows; ++k) p->external.row[k][i] += factor * own->force[k][n];
   }
 }
 
@@ -149,7 +149,7 @@ static void state(Load *load, const char *name, StateList *list)
     char part[24];
     snprintf(part, sizeof part, "reaction %d", k);
     state_add(list,
-              &(StateRow){.unit = k < ROTATION ? "force per volume" : "stress",
+              &(StateRow){.unit = k < 3 ? "force per volume" : "stress",
                           .kind = STATE_NUMBERS,
                           .role = STATE_COMMITTED,
                           .count = load->selection.count,

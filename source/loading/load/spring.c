@@ -168,8 +168,8 @@ static bool change_between(const Load *load, const Particles *p, double change[3
 {
   const Spring *spring = load->own;
   for (int k = 0; k < 3; ++k)
-    change[k] = mean(p, &load->selection, load->volume, p->displacement[k]) -
-                mean(p, &load->other, spring->other_volume, p->displacement[k]) - spring->from[k][0];
+    change[k] = mean(p, &load->selection, load->volume, p->displacement.row[k]) -
+                mean(p, &load->other, spring->other_volume, p->displacement.row[k]) - spring->from[k][0];
   return spring_keep(spring, change);
 }
 
@@ -177,14 +177,14 @@ static bool change_between(const Load *load, const Particles *p, double change[3
 static bool change_at(const Load *load, const Particles *p, int64_t n, double change[3])
 {
   const Spring *spring = load->own;
-  for (int k = 0; k < 3; ++k) change[k] = p->displacement[k][load->selection.places[n]] - spring->from[k][n];
+  for (int k = 0; k < 3; ++k) change[k] = p->displacement.row[k][load->selection.places[n]] - spring->from[k][n];
   return spring_keep(spring, change);
 }
 
 static void push_evenly(const Selection *selection, Particles *p, const double force[3], double volume)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] += force[k] / volume;
+    for (int k = 0; k < 3; ++k) p->external.row[k][selection->places[n]] += force[k] / volume;
 }
 
 static void force(const Load *load, Particles *p, double factor)
@@ -205,7 +205,7 @@ static void force(const Load *load, Particles *p, double factor)
     double change[3];
     change_at(load, p, n, change);
     for (int k = 0; k < 3; ++k)
-      p->external[k][load->selection.places[n]] -= spring->stiffness / load->volume * change[k];
+      p->external.row[k][load->selection.places[n]] -= spring->stiffness / load->volume * change[k];
   }
 }
 
@@ -294,10 +294,10 @@ static bool begin(Load *load, Particles *p)
   Spring *spring = load->own;
   for (int k = 0; k < 3; ++k) {
     if (joins(load))
-      spring->from[k][0] = mean(p, &load->selection, load->volume, p->displacement[k]) -
-                           mean(p, &load->other, spring->other_volume, p->displacement[k]);
+      spring->from[k][0] = mean(p, &load->selection, load->volume, p->displacement.row[k]) -
+                           mean(p, &load->other, spring->other_volume, p->displacement.row[k]);
     for (int64_t n = 0; !joins(load) && n < load->selection.count; ++n)
-      spring->from[k][n] = p->displacement[k][load->selection.places[n]];
+      spring->from[k][n] = p->displacement.row[k][load->selection.places[n]];
   }
   return false;
 }

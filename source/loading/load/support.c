@@ -202,7 +202,7 @@ static int create(Load *load, const LoadMaking *making)
   while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
   if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
   const int axis = body->margins.items[margin].axis;
-  if (body->particles.motions > ROTATION && spec->held == HELD_IN_ALL)
+  if (particles_have_rotations(&body->particles) && spec->held == HELD_IN_ALL)
     return node_error(
         making->reader->document, load->node, error,
         "support: held in all directions its images are no mirror images, and what they do to particles that have "
@@ -232,7 +232,7 @@ static int create(Load *load, const LoadMaking *making)
     load_constrain(load, making, direction, 2 * moved, 0);
     if (follow_images(load, making, held ? -1 : 1)) return BRECCIA_FAILURE;
   }
-  return body->particles.motions > ROTATION ? turn_images(load, making, axis) : BRECCIA_OK;
+  return particles_have_rotations(&body->particles) ? turn_images(load, making, axis) : BRECCIA_OK;
 }
 
 static void destroy(Load *load)

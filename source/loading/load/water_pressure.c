@@ -77,7 +77,7 @@ static void force(const Load *load, Particles *p, double factor)
 {
   const WaterPressure *own = load->own;
   const Face *face = &own->face;
-  double *external = p->external[face->axis];
+  double *external = p->external.row[face->axis];
   TEAM_FOR (n, face->count)
     external[face->place[n]] -= face->outwards * factor * own->pressure[face->at[n]] * face->per_volume[n];
 }

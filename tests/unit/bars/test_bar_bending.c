@@ -74,7 +74,7 @@ static void a_sine_holds_its_energy(void **state)
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->displacement[1][i] = a * sin(k * p->position[0][i]);
+    p->displacement.row[1][i] = a * sin(k * p->position[0][i]);
   }
   compute_forces(m);
   Bars *b = bars_of(m);
@@ -120,7 +120,8 @@ static void moments_follow_from_an_energy(void **state)
     const bool plane = m->domain.body.dimensions == 2;
     deform_uniformly(m, (const double[]){0.8, -0.6, 0, 0.6, 0.81, 0, 0, 0, 1});
     shake(m, 0.03);
-    double *v[3], *changed[3], *up[3], *down[3], *here[3], sum[6] = {0}, size = 0;
+    Vector v[1] = {{0}}, changed[1] = {{0}}, up[1] = {{0}}, down[1] = {{0}}, here[1] = {{0}};
+    double sum[6] = {0}, size = 0;
     find_beside(m, here);
     bars_linearise(bars_of(m));
     const double bent = (bars_accept(bars_of(m)), bars_bent(bars_of(m), 0, bars_of(m)->count)),
@@ -130,35 +131,36 @@ static void moments_follow_from_an_energy(void **state)
       const int32_t i = p->place_of[n];
       for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, c = (k + 2) % 3;
-        sum[k] += p->volume[i] * here[k][i];
-        sum[3 + k] += p->volume[i] * ((p->position[a][i] + p->displacement[a][i]) * here[c][i] -
-                                      (p->position[c][i] + p->displacement[c][i]) * here[a][i]);
-        size += fabs(p->volume[i] * here[k][i]);
+        sum[k] += p->volume[i] * here->row[k][i];
+        sum[3 + k] += p->volume[i] * ((p->position[a][i] + p->displacement.row[a][i]) * here->row[c][i] -
+                                      (p->position[c][i] + p->displacement.row[c][i]) * here->row[a][i]);
+        size += fabs(p->volume[i] * here->row[k][i]);
       }
     }
     for (int k = 0; k < 6; ++k) assert_near(sum[k], 0, 1e-13 * size);
     uint64_t seed = 3;
+    assert_true(vector_create(v, &p->space, "test", NULL));
+    assert_true(vector_create(changed, &p->space, "test", NULL));
     for (int k = 0; k < 3; ++k) {
-      v[k] = places_array(p->places, "test", NULL);
-      changed[k] = places_array(p->places, "test", NULL);
-      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n)
+        v->row[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
     }
     domain_change_forces(&m->domain, v, changed);
     const double h = 1e-7;
     double energy[2] = {0}, work = 0;
     for (int side = 0; side < 2; ++side) {
       for (int k = 0; k < 3; ++k)
-        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+        for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] += (side ? -2 : 1) * h * v->row[k][i];
       find_beside(m, side ? down : up);
       energy[side] = energy_of(m);
     }
     size = 0;
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed->row[k][i]));
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
-        assert_near((up[k][i] - down[k][i]) / (2 * h), changed[k][i], 1e-6 * size);
-        work -= p->volume[i] * (up[k][i] + down[k][i]) / 2 * v[k][i];
+        assert_near((up->row[k][i] - down->row[k][i]) / (2 * h), changed->row[k][i], 1e-6 * size);
+        work -= p->volume[i] * (up->row[k][i] + down->row[k][i]) / 2 * v->row[k][i];
       }
     assert_near((energy[0] - energy[1]) / (2 * h), work, 1e-6 * fabs(work));
     drop(v);
@@ -176,7 +178,7 @@ static void turning_bends_nothing_and_what_tears_is_lost(void **state)
   breccia_model *m = bent_bar("cubic");
   Bars *b = bars_of(m);
   deform_uniformly(m, (const double[]){0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1});
-  double *force[3];
+  Vector force[1] = {{0}};
   find_beside(m, force);
   assert_near(energy_of(m), 0, 1e-12);
   drop(force);

@@ -116,13 +116,13 @@ static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
   for (int64_t e = 8; e < b->count; ++e)
     assert_near(bar_bond_stress_in(b, 0, e), 0, 1e-9 * there[4]); /* in its sleeve */
   for (int64_t k = 9; k <= b->count; ++k) assert_near(b->slips->stress_held[k], 0, 0);
-  double *f[3];
-  for (int k = 0; k < 3; ++k) f[k] = places_array(p->places, "test", NULL);
+  Vector f[1] = {{0}};
+  assert_true(vector_create(f, &p->space, "test", NULL));
   domain_forces_beside(&m->domain, NULL, f);
   for (int64_t n = 0; n < p->count; ++n)
-    if (p->position[0][p->place_of[n]] < 0.6) held += p->volume[p->place_of[n]] * f[0][p->place_of[n]];
+    if (p->position[0][p->place_of[n]] < 0.6) held += p->volume[p->place_of[n]] * f->row[0][p->place_of[n]];
   assert_near(held, force, 0.01 * force);
-  for (int k = 0; k < 3; ++k) places_free(&f[k]);
+  vector_destroy(f);
   breccia_model_destroy(&m);
 }
 
@@ -294,16 +294,17 @@ static void bars_that_slip_neither_push_nor_turn_the_whole(void **state)
     breccia_model *m = bent(laws[c / 3], bonds[c % 3]);
     const Particles *p = m->domain.particles;
     shake(m, 0.01);
-    double *f[3], sum[3] = {0}, turn[3] = {0}, size = 0;
+    Vector f[1] = {{0}};
+    double sum[3] = {0}, turn[3] = {0}, size = 0;
     find_beside(m, f);
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, z = (k + 2) % 3;
-        sum[k] += p->volume[i] * f[k][i];
-        size += fabs(p->volume[i] * f[k][i]);
-        turn[k] += p->volume[i] * ((p->position[a][i] + p->displacement[a][i]) * f[z][i] -
-                                   (p->position[z][i] + p->displacement[z][i]) * f[a][i]);
+        sum[k] += p->volume[i] * f->row[k][i];
+        size += fabs(p->volume[i] * f->row[k][i]);
+        turn[k] += p->volume[i] * ((p->position[a][i] + p->displacement.row[a][i]) * f->row[z][i] -
+                                   (p->position[z][i] + p->displacement.row[z][i]) * f->row[a][i]);
       }
     }
     assert_true(size > 1);
@@ -322,14 +323,15 @@ static void a_body_that_is_turned_has_the_same_slips(void **state)
   for (size_t c = 0; c < 6; ++c) {
     breccia_model *straight = bent(laws[c / 3], bonds[c % 3]), *turned = bent(laws[c / 3], bonds[c % 3]);
     const double q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
-    double *f[3], *g[3];
+    Vector f[1] = {{0}}, g[1] = {{0}};
     shake(straight, 0.004);
     Particles *p = straight->domain.particles, *r = turned->domain.particles;
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       for (int k = 0; k < 3; ++k) {
-        r->displacement[k][i] = -r->position[k][i];
-        for (int j = 0; j < 3; ++j) r->displacement[k][i] += q[3 * k + j] * (p->position[j][i] + p->displacement[j][i]);
+        r->displacement.row[k][i] = -r->position[k][i];
+        for (int j = 0; j < 3; ++j)
+          r->displacement.row[k][i] += q[3 * k + j] * (p->position[j][i] + p->displacement.row[j][i]);
       }
     }
     find_beside(straight, f);
@@ -340,10 +342,11 @@ static void a_body_that_is_turned_has_the_same_slips(void **state)
     assert_true(most > 1e-5);
     for (int64_t k = 0; k <= a->count; ++k) assert_near(b->slips->slip[k], a->slips->slip[k], 1e-9 * most);
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(f[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(f->row[k][i]));
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i)
-        assert_near(g[k][i], q[3 * k] * f[0][i] + q[3 * k + 1] * f[1][i] + q[3 * k + 2] * f[2][i], 1e-8 * size);
+        assert_near(g->row[k][i], q[3 * k] * f->row[0][i] + q[3 * k + 1] * f->row[1][i] + q[3 * k + 2] * f->row[2][i],
+                    1e-8 * size);
     drop(f);
     drop(g);
     breccia_model_destroy(&straight);
@@ -360,29 +363,30 @@ static void changes_are_those_of_forces(void **state)
     Bars *b = bars_of(m);
     deform_uniformly(m, (const double[]){0.8, -0.6, 0, 0.6, 0.81, 0, 0, 0, 1});
     shake(m, 2e-3);
-    double *v[3], *changed[3], *up[3], *down[3], size = 0;
+    Vector v[1] = {{0}}, changed[1] = {{0}}, up[1] = {{0}}, down[1] = {{0}};
+    double size = 0;
     find_beside(m, up);
     bars_linearise(b);
     drop(up);
     uint64_t seed = 3;
+    assert_true(vector_create(v, &p->space, "test", NULL));
+    assert_true(vector_create(changed, &p->space, "test", NULL));
     for (int k = 0; k < 3; ++k) {
-      v[k] = places_array(p->places, "test", NULL);
-      changed[k] = places_array(p->places, "test", NULL);
-      for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+      for (int64_t n = 0; n < p->count; ++n) v->row[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
     }
     domain_change_forces(&m->domain, v, changed);
     const double h = 1e-8;
     for (int side = 0; side < 2; ++side) {
       for (int k = 0; k < 3; ++k)
-        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+        for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] += (side ? -2 : 1) * h * v->row[k][i];
       find_beside(m, side ? down : up);
     }
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed->row[k][i]));
     assert_true(size > 0);
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i)
-        assert_near((up[k][i] - down[k][i]) / (2 * h), changed[k][i], 1e-5 * size);
+        assert_near((up->row[k][i] - down->row[k][i]) / (2 * h), changed->row[k][i], 1e-5 * size);
     drop(v);
     drop(changed);
     drop(up);
@@ -396,15 +400,16 @@ static void stiff_bond_comes_to_perfect_bond(void **state)
 {
   (void)state;
   breccia_model *stiff = bent(STEEL, "bond: {law: linear, stiffness: 1e13}"), *perfect = bent(STEEL, "snap: no");
-  double *f[3], *g[3], size = 0;
+  Vector f[1] = {{0}}, g[1] = {{0}};
+  double size = 0;
   shake(stiff, 0.004);
   shake(perfect, 0.004);
   find_beside(stiff, f);
   find_beside(perfect, g);
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) size = larger_of(size, fabs(g[k][i]));
+    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) size = larger_of(size, fabs(g->row[k][i]));
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) assert_near(f[k][i], g[k][i], 1e-4 * size);
+    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) assert_near(f->row[k][i], g->row[k][i], 1e-4 * size);
   drop(f);
   drop(g);
   breccia_model_destroy(&stiff);

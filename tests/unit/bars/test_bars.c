@@ -83,16 +83,17 @@ static void bars_neither_push_nor_turn_the_whole(void **state)
     breccia_model *m = bent_bar(lattices[l], "material: rod");
     const Particles *p = m->domain.particles;
     shake(m, 0.01);
-    double *f[3], sum[3] = {0}, turn[3] = {0}, size = 0;
+    Vector f[1] = {{0}};
+    double sum[3] = {0}, turn[3] = {0}, size = 0;
     find_beside(m, f);
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, c = (k + 2) % 3;
-        sum[k] += p->volume[i] * f[k][i];
-        size += fabs(p->volume[i] * f[k][i]);
-        turn[k] += p->volume[i] * ((p->position[a][i] + p->displacement[a][i]) * f[c][i] -
-                                   (p->position[c][i] + p->displacement[c][i]) * f[a][i]);
+        sum[k] += p->volume[i] * f->row[k][i];
+        size += fabs(p->volume[i] * f->row[k][i]);
+        turn[k] += p->volume[i] * ((p->position[a][i] + p->displacement.row[a][i]) * f->row[c][i] -
+                                   (p->position[c][i] + p->displacement.row[c][i]) * f->row[a][i]);
       }
     }
     assert_true(size > 1);
@@ -112,7 +113,7 @@ static void bars_carry_nothing_where_the_body_only_turns(void **state)
     breccia_model *m = bent_bar("cubic", "material: steel");
     const double angle = quarters * acos(-1) / 2, c = cos(angle), s = sin(angle);
     deform_uniformly(m, (const double[]){c, -s, 0, s, c, 0, 0, 0, 1});
-    double *f[3];
+    Vector f[1] = {{0}};
     find_beside(m, f);
     const Bars *b = bars_of(m);
     for (int64_t e = 0; e < b->count; ++e) assert_near(b->strain[e], 0, 1e-13);
@@ -134,16 +135,17 @@ static void changes_are_those_of_forces_and_of_energy(void **state)
     const bool plane = m->domain.body.dimensions == 2;
     deform_uniformly(m, (const double[]){0.8, -0.6, 0, 0.6, 0.81, 0, 0, 0, 1});
     shake(m, 2e-3);
-    double *v[3], *changed[3], *up[3], *down[3], *assembled[3];
+    Vector v[1] = {{0}}, changed[1] = {{0}}, up[1] = {{0}}, down[1] = {{0}}, assembled[1] = {{0}};
     find_beside(m, up);
     bars_linearise(b);
     drop(up);
     uint64_t seed = 3;
+    assert_true(vector_create(v, &p->space, "test", NULL));
+    assert_true(vector_create(changed, &p->space, "test", NULL));
+    assert_true(vector_create(assembled, &p->space, "test", NULL));
     for (int k = 0; k < 3; ++k) {
-      v[k] = places_array(p->places, "test", NULL);
-      changed[k] = places_array(p->places, "test", NULL);
-      assembled[k] = places_array(p->places, "test", NULL);
-      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n)
+        v->row[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
     }
     domain_change_forces(&m->domain, v, changed);
     Operator point = {0};
@@ -152,10 +154,10 @@ static void changes_are_those_of_forces_and_of_energy(void **state)
       assert_int_equal(bars_point(b, e, &point, NULL), 0);
       for (int i = 0; i < point.count; ++i)
         for (int j = 0; j < point.count; ++j) {
-          operator_stiffness(&point, p->displacement, i, j, k9);
+          operator_stiffness(&point, p->displacement.row, i, j, k9);
           for (int k = 0; k < 9; ++k)
-            assembled[k / 3][point.places[i].place] +=
-                k9[k] * v[k % 3][point.places[j].place] / p->volume[point.places[i].place];
+            assembled->row[k / 3][point.places[i].place] +=
+                k9[k] * v->row[k % 3][point.places[j].place] / p->volume[point.places[i].place];
         }
     }
     operator_destroy(&point);
@@ -163,20 +165,20 @@ static void changes_are_those_of_forces_and_of_energy(void **state)
     double energy[2] = {0}, work = 0;
     for (int side = 0; side < 2; ++side) {
       for (int k = 0; k < 3; ++k)
-        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+        for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] += (side ? -2 : 1) * h * v->row[k][i];
       find_beside(m, side ? down : up);
       for (int64_t e = 0; e < b->count; ++e)
         energy[side] += b->area[e] * b->length[e] * 2e8 * b->strain[e] * b->strain[e] / 2;
     }
     double size = 0;
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed->row[k][i]));
     assert_true(size > 0);
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
-        assert_near((up[k][i] - down[k][i]) / (2 * h), changed[k][i], 1e-6 * size);
-        assert_near(assembled[k][i], changed[k][i], 1e-11 * size);
-        work -= p->volume[i] * (up[k][i] + down[k][i]) / 2 * v[k][i];
+        assert_near((up->row[k][i] - down->row[k][i]) / (2 * h), changed->row[k][i], 1e-6 * size);
+        assert_near(assembled->row[k][i], changed->row[k][i], 1e-11 * size);
+        work -= p->volume[i] * (up->row[k][i] + down->row[k][i]) / 2 * v->row[k][i];
       }
     if (l < 4) assert_near((energy[0] - energy[1]) / (2 * h), work, 1e-6 * fabs(work));
     drop(v);
@@ -219,7 +221,7 @@ static double pulled(const char *formulation, const char *bars, const char *solv
   double force = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[0][i] > 0.6) force -= p->volume[i] * p->internal[0][i];
+    if (p->position[0][i] > 0.6) force -= p->volume[i] * p->internal.row[0][i];
   }
   breccia_model_destroy(&m);
   return force;
@@ -460,7 +462,7 @@ static void a_cracked_tie_carries_what_its_steel_yields_at(void **state)
   const Bars *b = bars_of(m);
   double held = 0, most = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    if (p->position[0][p->place_of[n]] < 0.4) held += p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
+    if (p->position[0][p->place_of[n]] < 0.4) held += p->volume[p->place_of[n]] * p->internal.row[0][p->place_of[n]];
   for (int64_t e = 0; e < b->count; ++e) most = larger_of(most, b->stress[e]);
   assert_true(breccia_model_broken_bonds(m) > 100);
   assert_near(most, 5e5, 1e-6);

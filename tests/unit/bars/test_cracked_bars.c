@@ -16,7 +16,7 @@ static double exerted(const breccia_model *m, int load, int axis)
   const Load *l = &m->loading.loads[load];
   double sum = 0;
   for (int64_t n = 0; n < l->selection.count; ++n)
-    sum -= p->internal[axis][l->selection.places[n]] * p->volume[l->selection.places[n]];
+    sum -= p->internal.row[axis][l->selection.places[n]] * p->volume[l->selection.places[n]];
   return sum;
 }
 

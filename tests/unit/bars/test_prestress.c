@@ -40,7 +40,7 @@ static double stress_in(const Bars *b, double x)
 
 static double displacement_at(const breccia_model *m, int k, double x, double y)
 {
-  return m->domain.particles->displacement[k][particles_nearest(m->domain.particles, (double[]){x, y, 0})];
+  return m->domain.particles->displacement.row[k][particles_nearest(m->domain.particles, (double[]){x, y, 0})];
 }
 
 /** Force P before the concrete gives way: stress P / (A_c + n A_s) in the concrete, n times that less in the bar. */

@@ -87,9 +87,9 @@ static Resultant carried(const breccia_model *m)
   for (int64_t i = 0; i < p->places; ++i) {
     const double x = p->position[0][i], y = p->position[1][i], volume = p->volume[i];
     if (volume == 0 || x < 0) continue;
-    s.force -= p->internal[0][i] * volume;
-    s.moment += (y * p->internal[0][i] - x * p->internal[1][i]) * volume;
-    if (p->motions > 3) s.moment -= p->internal[ROTATION][i] * volume; /* of links that are bent */
+    s.force -= p->internal.row[0][i] * volume;
+    s.moment += (y * p->internal.row[0][i] - x * p->internal.row[1][i]) * volume;
+    if (p->space.rows > 3) s.moment -= p->internal.row[p->space.rotation][i] * volume; /* of links that are bent */
   }
   return s;
 }

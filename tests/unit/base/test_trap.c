@@ -233,7 +233,8 @@ static void a_run_stops_at_the_first_trap_and_is_the_same_up_to_it(void **state)
       status = breccia_model_step(trapped, 1, error);
       const size_t bytes = sizeof(double) * (size_t)breccia_model_places(plain);
       for (int k = 0; k < 3; ++k)
-        assert_memory_equal(plain->domain.particles->velocity[k], trapped->domain.particles->velocity[k], bytes);
+        assert_memory_equal(plain->domain.particles->velocity.row[k], trapped->domain.particles->velocity.row[k],
+                            bytes);
     }
     assert_int_equal(status, BRECCIA_FAILURE);
     double strain = 0;

@@ -518,7 +518,7 @@ static void selections_hold_what_they_say(void **state)
   loading_apply(l, model->domain.particles, 0);
   double total = 0;
   for (int64_t i = 0; i < model->domain.particles->places; ++i)
-    total += model->domain.particles->external[0][i] * model->domain.particles->volume[i];
+    total += model->domain.particles->external.row[0][i] * model->domain.particles->volume[i];
   assert_near(total, 6, 1e-12);
   breccia_model_destroy(&model);
 }

@@ -93,16 +93,16 @@ static void a_lattice_read_from_a_file_has_the_forces_of_the_lattice(void **stat
       uint64_t seed = 3;
       for (int32_t n = 0; n < p->count; ++n)
         for (int c = 0; c < (s->plane ? 2 : 3); ++c)
-          q->displacement[c][q->place_of[number_of[n]]] = p->displacement[c][p->place_of[n]] =
+          q->displacement.row[c][q->place_of[number_of[n]]] = p->displacement.row[c][p->place_of[n]] =
               amplitude[large] * (random_uniform(&seed) - 0.5);
       compute_forces(lattice);
       compute_forces(cloud);
       double most = 0, off = 0;
       for (int32_t n = 0; n < p->count; ++n)
         for (int c = 0; c < 3; ++c) {
-          double f = p->internal[c][p->place_of[n]];
+          double f = p->internal.row[c][p->place_of[n]];
           most = larger_of(most, fabs(f));
-          off = larger_of(off, fabs(f - q->internal[c][q->place_of[number_of[n]]]));
+          off = larger_of(off, fabs(f - q->internal.row[c][q->place_of[number_of[n]]]));
         }
       assert_true(most > 0);
       assert_near(off, 0, 2e-13 * most);
@@ -257,8 +257,8 @@ static void scattered_particles_have_exact_gradients_and_balance(void **state)
       model->domain.regions[0].type->gradient(model->domain.regions[0].formulation, i, found);
       for (int k = 0; k < 9; ++k) assert_near(found[k], f[k], 1e-12);
       for (int k = 0; k < 3; ++k) {
-        total[k] += p->internal[k][i] * p->volume[i];
-        size += fabs(p->internal[k][i] * p->volume[i]);
+        total[k] += p->internal.row[k][i] * p->volume[i];
+        size += fabs(p->internal.row[k][i] * p->volume[i]);
       }
     }
     for (int k = 0; k < 3; ++k) assert_near(total[k], 0, 1e-13 * size);

@@ -4,7 +4,6 @@
 
 #include "base/random.h"
 #include "solver/pieces.h"
-#include "solver/vectors.h"
 
 #define DECK                                                                                                           \
   "units: {length: m, force: kN, time: s}\n" SOFT_SOLID                                                                \
@@ -45,13 +44,13 @@ static void images_move_as_what_they_are_images_of(void **state)
     breccia_model *m = model_of(DECK "loads: [%s]\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n", cases[c].loads);
     const Particles *p = m->domain.particles;
     const Unknowns u = unknowns_of(&m->domain, &m->loading);
-    double *v[MOTIONS];
-    assert_true(vectors_make(v, p, "test", NULL));
+    Vector v[1] = {{0}};
+    assert_true(vector_create(v, &p->space, "test", NULL));
     uint64_t seed = 3;
     for (int k = 0; k < 3; ++k)
       for (int64_t n = 0; n < p->count; ++n) {
-        p->displacement[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
-        v[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
+        p->displacement.row[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
+        v->row[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
       }
     for (int timed = 0; timed < 2; ++timed) {
       unknowns_spread(&u, timed ? 1 : NAN, v); /* changes alone, or to where all stands at the end */
@@ -72,8 +71,8 @@ static void images_move_as_what_they_are_images_of(void **state)
         for (int k = 0; k < 3; ++k) assert_near(p->position[k][j], inside[k], 1e-9);
         ++images;
         for (int k = 0; k < 3; ++k) {
-          const double sign = cases[c].held[k] ? -1 : 1, there = v[k][j] + (timed ? p->displacement[k][j] : 0),
-                       here = v[k][i] + (timed ? p->displacement[k][i] : 0);
+          const double sign = cases[c].held[k] ? -1 : 1, there = v->row[k][j] + (timed ? p->displacement.row[k][j] : 0),
+                       here = v->row[k][i] + (timed ? p->displacement.row[k][i] : 0);
           const double wanted = sign * there + (timed && cases[c].held[k] ? 2 * cases[c].moved[k] : 0);
           if (!(fabs(here - wanted) < 1e-15))
             fail_msg("%s: an image goes %g along %c, not %g", cases[c].loads, here, "xyz"[k], wanted);
@@ -85,7 +84,7 @@ static void images_move_as_what_they_are_images_of(void **state)
     assert_int_equal(pieces_find_loose(&u, PIECES_ALL, &loose, NULL), 0);
     assert_int_equal(loose.pieces, cases[c].loose != NULL);
     if (loose.pieces) assert_string_equal(loose.motion, cases[c].loose);
-    vectors_free(v);
+    vector_destroy(v);
     breccia_model_destroy(&m);
   }
 }
@@ -146,9 +145,9 @@ static void half_a_lattice_moves_as_the_whole(void **state)
         particles_rotation(p, i, here);
         particles_rotation(whole, j, there);
         for (int k = 0; k < 3; ++k) {
-          assert_near(p->displacement[k][i], whole->displacement[k][j], 1e-9);
+          assert_near(p->displacement.row[k][i], whole->displacement.row[k][j], 1e-9);
           assert_near(here[k], there[k], 1e-8);
-          most = larger_of(most, fabs(p->displacement[k][i]));
+          most = larger_of(most, fabs(p->displacement.row[k][i]));
           turned = larger_of(turned, fabs(here[k]));
         }
       }

@@ -247,7 +247,7 @@ static void stress_of_stretch(breccia_model *model, const double n[3], double st
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) f[3 * i + j] = (i == j) + s * n[i] * n[j];
   const Particles *p = model->domain.particles;
-  for (int k = 0; k < 3; ++k) memset(p->displacement[k], 0, sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < 3; ++k) memset(p->displacement.row[k], 0, sizeof(double) * (size_t)p->places);
   deform_uniformly(model, f);
   domain_look(&model->domain, middle_of(model), strain, stress);
   for (int k = 0; k < 6; ++k) stress[k] /= s;
@@ -395,7 +395,7 @@ static void waves_run_as_the_sum_over_the_lattice_says(void **state)
         const int32_t i = p->place_of[n];
         double phase = 0;
         for (int m = 0; m < 3; ++m) phase += k[m] * (p->position[m][i] - p->position[m][centre]);
-        for (int m = 0; m < 3; ++m) p->displacement[m][i] = amplitude * a[m] * cos(phase);
+        for (int m = 0; m < 3; ++m) p->displacement.row[m][i] = amplitude * a[m] * cos(phase);
       }
       compute_forces(model);
       for (int i = -9; i <= 9; ++i)
@@ -411,7 +411,7 @@ static void waves_run_as_the_sum_over_the_lattice_says(void **state)
               want[m] -= amplitude * c * volume / length * (1 - cos(turn)) * pull * xi[m] / length;
           }
       for (int m = 0; m < 3; ++m) size = larger_of(size, fabs(want[m]));
-      for (int m = 0; m < 3; ++m) assert_near(p->internal[m][centre], want[m], 1e-6 * size);
+      for (int m = 0; m < 3; ++m) assert_near(p->internal.row[m][centre], want[m], 1e-6 * size);
     }
     breccia_model_destroy(&model);
   }
@@ -453,7 +453,7 @@ static void uniform_strain_leaves_the_inside_without_force_in_all_formulations(v
         for (int k = 0; k < 9; ++k)
           if (k < 8 || d->body.dimensions == 3) assert_near(gradient[k], f[k], 1e-12); /* at surfaces too */
       }
-      for (int k = 0; deep && k < 3; ++k) assert_near(p->internal[k][i], 0, 1e-12);
+      for (int k = 0; deep && k < 3; ++k) assert_near(p->internal.row[k][i], 0, 1e-12);
       inside += deep;
     }
     assert_true(inside > 4);

@@ -72,12 +72,12 @@ static void plane_waves_stay_plane(void **state)
       for (int64_t o = 0; o < p->count && isnan(first); ++o) {
         const int32_t other = p->place_of[o];
         if (outside(m, o) || fabs(p->position[1][other] - p->position[1][i]) > 1e-9) continue;
-        first = p->velocity[0][other];
-        across = p->velocity[1][other];
+        first = p->velocity.row[0][other];
+        across = p->velocity.row[1][other];
       }
       most = larger_of(most, fabs(first));
-      assert_near(p->velocity[0][i], first, 1e-10);
-      assert_near(p->velocity[1][i], f ? across : 0,
+      assert_near(p->velocity.row[0][i], first, 1e-10);
+      assert_near(p->velocity.row[1][i], f ? across : 0,
                   1e-10); /* bonds that turn lengthen: at finite strain shear swells */
     }
     assert_true(most > 0.5);
@@ -92,8 +92,8 @@ static void push(breccia_model *m)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const double angle = 2 * acos(-1) * p->position[0][i] / 4, y = p->position[1][i];
-    p->velocity[0][i] = 0.3 * sin(angle + 0.4) * (1 + 0.3 * y) + 0.1;
-    p->velocity[1][i] = 0.2 * cos(2 * angle) * y - 0.05;
+    p->velocity.row[0][i] = 0.3 * sin(angle + 0.4) * (1 + 0.3 * y) + 0.1;
+    p->velocity.row[1][i] = 0.2 * cos(2 * angle) * y - 0.05;
   }
 }
 
@@ -121,7 +121,7 @@ static void one_period_moves_as_two(void **state)
         for (int64_t n = 0; n < p->count; ++n)
           for (int axis = 0; !k && axis < 2 && !outside(pieces[k], n); ++axis)
             momentum[axis] +=
-                p->density[p->place_of[n]] * p->volume[p->place_of[n]] * p->velocity[axis][p->place_of[n]];
+                p->density[p->place_of[n]] * p->volume[p->place_of[n]] * p->velocity.row[axis][p->place_of[n]];
         while (!solver_is_done(&pieces[k]->solver)) step_surely(pieces[k], 1);
         assert_balanced(pieces[k], 1e-3);
       }
@@ -138,15 +138,15 @@ static void one_period_moves_as_two(void **state)
         }
         assert_true(other >= 0);
         for (int axis = 0; axis < 2; ++axis) {
-          assert_near(two->displacement[axis][i], one->displacement[axis][other], s ? 1e-8 : 1e-12);
-          most = larger_of(most, fabs(two->displacement[axis][i]));
+          assert_near(two->displacement.row[axis][i], one->displacement.row[axis][other], s ? 1e-8 : 1e-12);
+          most = larger_of(most, fabs(two->displacement.row[axis][i]));
         }
       }
       assert_true(most > 1e-3);
       for (int64_t n = 0; n < one->count; ++n)
         for (int axis = 0; axis < 2 && !outside(pieces[0], n); ++axis)
-          momentum[axis] -=
-              one->density[one->place_of[n]] * one->volume[one->place_of[n]] * one->velocity[axis][one->place_of[n]];
+          momentum[axis] -= one->density[one->place_of[n]] * one->volume[one->place_of[n]] *
+                            one->velocity.row[axis][one->place_of[n]];
       for (int axis = 0; axis < 2; ++axis) assert_near(momentum[axis], 0, s ? 1e-7 : 1e-11);
       for (int k = 0; k < 2; ++k) breccia_model_destroy(&pieces[k]);
     }
@@ -174,8 +174,8 @@ static void weight_settles_as_in_one_dimension(void **state)
       const int32_t i = p->place_of[n];
       if (outside(m, n) || p->position[1][i] < 2) continue;
       const double y = p->position[1][i], expected = k ? 0 : -settled * (1 - pow(1 - y / 10, 2));
-      assert_near(p->displacement[0][i], 0, 1e-9);
-      assert_near(p->displacement[1][i], expected, 0.01 * settled);
+      assert_near(p->displacement.row[0][i], 0, 1e-9);
+      assert_near(p->displacement.row[1][i], expected, 0.01 * settled);
     }
     breccia_model_destroy(&m);
   }

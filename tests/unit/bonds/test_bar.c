@@ -59,10 +59,11 @@ static void waves_have_the_dispersion_of_bonds(void **state)
     const double k = wave * pi / 7.3, amplitude = 1e-9;
     double square = 0;
     for (int j = 1; j <= 3; ++j) square += 2 * c * 0.3 / 2 * (1 - cos(k * j)) / j;
-    for (int32_t n = 0; n < 120; ++n) p->displacement[0][p->place_of[n]] = amplitude * cos(k * n);
+    for (int32_t n = 0; n < 120; ++n) p->displacement.row[0][p->place_of[n]] = amplitude * cos(k * n);
     compute_forces(model);
     for (int32_t n = 10; n < 110; ++n)
-      assert_near(p->internal[0][p->place_of[n]], -2 * square * amplitude * cos(k * n), 1e-7 * 2 * square * amplitude);
+      assert_near(p->internal.row[0][p->place_of[n]], -2 * square * amplitude * cos(k * n),
+                  1e-7 * 2 * square * amplitude);
     breccia_model_destroy(&model);
   }
 }
@@ -90,7 +91,7 @@ static void a_front_runs_along_the_bar_at_root_e_over_rho(void **state)
   while (!(arrival[1] > 0) && breccia_model_time(model) < 100) {
     breccia_model_step(model, 1, NULL);
     for (int k = 0; k < 2; ++k)
-      if (!(arrival[k] > 0) && p->velocity[0][p->place_of[100 + 200 * k]] > 0.0005)
+      if (!(arrival[k] > 0) && p->velocity.row[0][p->place_of[100 + 200 * k]] > 0.0005)
         arrival[k] = breccia_model_time(model);
   }
   assert_near(200 / (arrival[1] - arrival[0]), sqrt(150. / 2), 0.02 * sqrt(150. / 2));

@@ -30,7 +30,7 @@ static void stress_in_the_middle(breccia_model *model, const double f[9], double
   double centre[3], low[3], high[3], strain[6];
   particles_bounds(p, low, high);
   for (int k = 0; k < 3; ++k) centre[k] = (low[k] + high[k]) / 2;
-  for (int k = 0; k < 3; ++k) memset(p->displacement[k], 0, sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < 3; ++k) memset(p->displacement.row[k], 0, sizeof(double) * (size_t)p->places);
   deform_uniformly(model, f);
   domain_look(&model->domain, particles_nearest(p, centre), strain, stress);
 }
@@ -201,12 +201,12 @@ static void a_quadratic_field_has_the_force_of_the_continuum(void **state)
     breccia_model *model = plate(k % 2 ? "plane strain" : "plane stress", words, 21);
     const Particles *p = model->domain.particles;
     for (int64_t i = 0; i < p->places; ++i)
-      p->displacement[0][i] = p->number[i] < 0 ? 0 : v * p->position[0][i] * p->position[0][i];
+      p->displacement.row[0][i] = p->number[i] < 0 ? 0 : v * p->position[0][i] * p->position[0][i];
     compute_forces(model);
     const double centre[3] = {10.5, 10.5, 0};
     int32_t i = particles_nearest(p, centre);
-    assert_near(p->internal[0][i] / (v * young), k % 2 ? 12. / 5 : 9. / 4, 0.02 * 9 / 4);
-    assert_near(p->internal[1][i] / (v * young), 0, 1e-6);
+    assert_near(p->internal.row[0][i] / (v * young), k % 2 ? 12. / 5 : 9. / 4, 0.02 * 9 / 4);
+    assert_near(p->internal.row[1][i] / (v * young), 0, 1e-6);
     breccia_model_destroy(&model);
   }
 }
@@ -240,7 +240,8 @@ static void forces_are_sums_over_single_bonds_and_balance(void **state)
     const Family *f = &d->family;
     uint64_t seed = 3;
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = amplitudes[a] * (random_uniform(&seed) - 0.5);
+      for (int k = 0; k < 3; ++k)
+        p->displacement.row[k][p->place_of[n]] = amplitudes[a] * (random_uniform(&seed) - 0.5);
     if (a == 5) deform_uniformly(model, shorter);
     compute_forces(model);
     double total[3] = {0}, moment[3] = {0}, size = 0;
@@ -257,14 +258,15 @@ static void forces_are_sums_over_single_bonds_and_balance(void **state)
         }
       }
       for (int k = 0; k < 3; ++k) {
-        assert_near(p->internal[k][i], force[k], 4e-15 * magnitude);
-        total[k] += p->internal[k][i] * p->volume[i];
-        y[k] = p->position[k][i] + p->displacement[k][i];
-        size += fabs(p->internal[k][i]) * p->volume[i];
+        assert_near(p->internal.row[k][i], force[k], 4e-15 * magnitude);
+        total[k] += p->internal.row[k][i] * p->volume[i];
+        y[k] = p->position[k][i] + p->displacement.row[k][i];
+        size += fabs(p->internal.row[k][i]) * p->volume[i];
       }
       for (int k = 0; k < 3; ++k)
-        moment[k] += (y[(k + 1) % 3] * p->internal[(k + 2) % 3][i] - y[(k + 2) % 3] * p->internal[(k + 1) % 3][i]) *
-                     p->volume[i];
+        moment[k] +=
+            (y[(k + 1) % 3] * p->internal.row[(k + 2) % 3][i] - y[(k + 2) % 3] * p->internal.row[(k + 1) % 3][i]) *
+            p->volume[i];
     }
     for (int k = 0; k < 3; ++k) {
       assert_near(total[k], 0, 1e-13 * size);
@@ -284,11 +286,11 @@ static void rigid_rotation_makes_no_force(void **state)
   const Particles *p = model->domain.particles;
   double largest[2] = {0};
   for (int turn = 0; turn < 2; ++turn) {
-    for (int k = 0; k < 3; ++k) memset(p->displacement[k], 0, sizeof(double) * (size_t)p->places);
+    for (int k = 0; k < 3; ++k) memset(p->displacement.row[k], 0, sizeof(double) * (size_t)p->places);
     deform_uniformly(model, turn ? f : stretch);
     compute_forces(model);
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < 3; ++k) largest[turn] = larger_of(largest[turn], fabs(p->internal[k][p->place_of[n]]));
+      for (int k = 0; k < 3; ++k) largest[turn] = larger_of(largest[turn], fabs(p->internal.row[k][p->place_of[n]]));
   }
   assert_true(largest[0] > 0);
   assert_near(largest[1] / largest[0], 0, 1e-12);
@@ -358,8 +360,8 @@ static void a_pulled_bar_breaks_alike_for_any_number_of_threads_and_keeps_its_en
     assert_true(breccia_model_broken_bonds(model) > (under_sanitizers() ? 0 : 100));
     assert_true(solver_energy(&model->solver).imbalance < 0.01);
     size_t bytes = sizeof(double) * (size_t)p->places;
-    if (!reference) reference = memcpy(malloc(bytes), p->displacement[0], bytes);
-    assert_memory_equal(reference, p->displacement[0], bytes);
+    if (!reference) reference = memcpy(malloc(bytes), p->displacement.row[0], bytes);
+    assert_memory_equal(reference, p->displacement.row[0], bytes);
     breccia_model_destroy(&model);
   }
   free(reference);
@@ -384,11 +386,11 @@ static void a_single_bond_has_its_force_to_the_last_digits(void **state)
     const long double length = (long double)p->position[0][b] - (long double)p->position[0][a];
     const double stretches[] = {1e-12, -3e-9, 1e-6, 1.9e-3, -1.9e-3, 1.95e-3, 2e-3, -0.02, 0.1, -0.3, 2};
     for (size_t k = 0; k < sizeof stretches / sizeof *stretches; ++k) {
-      p->displacement[0][b] = stretches[k] * (double)length;
+      p->displacement.row[0][b] = stretches[k] * (double)length;
       compute_forces(model);
-      long double expected = 12 * 150e3L / (acosl(-1) * powl(0.3L, 4)) * 1e-3L * (p->displacement[0][b] / length);
-      assert_near(p->internal[0][a] / (double)expected, 1, 1.5e-15);
-      assert_near(p->internal[0][b], -p->internal[0][a], 0);
+      long double expected = 12 * 150e3L / (acosl(-1) * powl(0.3L, 4)) * 1e-3L * (p->displacement.row[0][b] / length);
+      assert_near(p->internal.row[0][a] / (double)expected, 1, 1.5e-15);
+      assert_near(p->internal.row[0][b], -p->internal.row[0][a], 0);
     }
     breccia_model_destroy(&model);
   }
@@ -444,8 +446,8 @@ static void surface_correction_evens_out_surfaces_and_leaves_the_inside_alone(vo
       double total[3] = {0}, size = 0;
       for (int64_t i = 0; i < p->places; ++i)
         for (int k = 0; k < 3; ++k) {
-          total[k] += p->internal[k][i] * p->volume[i];
-          size += fabs(p->internal[k][i] * p->volume[i]);
+          total[k] += p->internal.row[k][i] * p->volume[i];
+          size += fabs(p->internal.row[k][i] * p->volume[i]);
         }
       for (int k = 0; k < 3; ++k) assert_near(total[k], 0, 1e-13 * size);
       breccia_model_destroy(&model);
@@ -483,14 +485,14 @@ static void forces_do_not_depend_on_how_bonds_are_kept(void **state)
         for (int64_t n = 0; n < p->count; ++n) {
           const int32_t i = p->place_of[n];
           const double *x[3] = {&p->position[0][i], &p->position[1][i], &p->position[2][i]};
-          for (int k = 0; k < 3; ++k) p->displacement[k][i] = 1e-4 * sin(1 + *x[k] + 1.7 * *x[(k + 1) % 3] - k);
+          for (int k = 0; k < 3; ++k) p->displacement.row[k][i] = 1e-4 * sin(1 + *x[k] + 1.7 * *x[(k + 1) % 3] - k);
         }
         compute_forces(model);
         for (int n = 0; n < 180; ++n) {
           const int32_t i = particles_nearest(p, (double[]){n % 9 + 0.5, n / 9 % 5 + 0.5, n / 45 + 0.5});
           for (int k = 0; k < 3; ++k) {
-            force[b][n][k] = p->internal[k][i];
-            largest = larger_of(largest, fabs(p->internal[k][i]));
+            force[b][n][k] = p->internal.row[k][i];
+            largest = larger_of(largest, fabs(p->internal.row[k][i]));
             if (b) farthest[b - 1] = fmax(farthest[b - 1], fabs(force[b][n][k] - force[0][n][k]));
           }
         }
@@ -522,8 +524,8 @@ static void a_bar_becomes_as_long_as_hooke_says(void **state)
     assert_true(solver_energy(&model->solver).kinetic < 1e-6 * solver_energy(&model->solver).external);
     double ends[2] = {0};
     for (int32_t n = 0; n < p->count; ++n) {
-      if (n % 30 == 2) ends[0] += p->displacement[0][p->place_of[n]] / 9; /* three layers in from the loaded ones */
-      if (n % 30 == 27) ends[1] += p->displacement[0][p->place_of[n]] / 9;
+      if (n % 30 == 2) ends[0] += p->displacement.row[0][p->place_of[n]] / 9; /* three layers in from the loaded ones */
+      if (n % 30 == 27) ends[1] += p->displacement.row[0][p->place_of[n]] / 9;
     }
     longer[on] = (ends[1] - ends[0]) / (25. / 30 * 1e-3);
     breccia_model_destroy(&model);

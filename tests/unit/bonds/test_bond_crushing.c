@@ -56,7 +56,7 @@ static double force_above(const breccia_model *m, double height)
   double force = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[1][i] > height) force -= p->volume[i] * p->internal[1][i];
+    if (p->position[1][i] > height) force -= p->volume[i] * p->internal.row[1][i];
   }
   return force;
 }

@@ -25,7 +25,7 @@ static void shake(breccia_model *model, double amplitude)
   const Particles *p = model->domain.particles;
   uint64_t seed = 11;
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = amplitude * (random_uniform(&seed) - 0.5);
+    for (int k = 0; k < 3; ++k) p->displacement.row[k][p->place_of[n]] = amplitude * (random_uniform(&seed) - 0.5);
 }
 
 static double largest_difference(const breccia_model *a, const breccia_model *b, double *largest)
@@ -34,8 +34,8 @@ static double largest_difference(const breccia_model *a, const breccia_model *b,
   *largest = 0;
   for (int64_t i = 0; i < a->domain.particles->places; ++i)
     for (int k = 0; k < 3; ++k) {
-      off = larger_of(off, fabs(a->domain.particles->internal[k][i] - b->domain.particles->internal[k][i]));
-      *largest = larger_of(*largest, fabs(a->domain.particles->internal[k][i]));
+      off = larger_of(off, fabs(a->domain.particles->internal.row[k][i] - b->domain.particles->internal.row[k][i]));
+      *largest = larger_of(*largest, fabs(a->domain.particles->internal.row[k][i]));
     }
   return off;
 }
@@ -77,7 +77,7 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
     double total[3] = {0}, size = 0;
     for (int64_t i = 0; i < d->particles->places; ++i)
       for (int k = 0; k < 3; ++k) {
-        double force = d->particles->internal[k][i] * d->particles->volume[i];
+        double force = d->particles->internal.row[k][i] * d->particles->volume[i];
         total[k] += force;
         size += fabs(force);
       }
@@ -149,7 +149,7 @@ static void parting_a_body_spends_its_fracture_energy(void **state)
       for (int step = 1; step <= 600; ++step) {
         double next = far * pow(step / 600., 3), force = 0;
         for (int32_t n = 0; n < p->count; ++n)
-          p->displacement[0][p->place_of[n]] = p->position[0][p->place_of[n]] > 0.003 ? next : 0;
+          p->displacement.row[0][p->place_of[n]] = p->position[0][p->place_of[n]] > 0.003 ? next : 0;
         compute_forces(model);
         points_commit(&d->regions[0].points);
         for (int32_t n = 0; n < p->count; ++n) {
@@ -157,7 +157,7 @@ static void parting_a_body_spends_its_fracture_energy(void **state)
           bool inside =
               p->position[0][i] < 0.003 && fabs(p->position[1][i] - across * 0.0005) < (across / 2 - margin) * 0.001;
           if (!s) inside &= fabs(p->position[2][i] - across * 0.0005) < (across / 2 - margin) * 0.001;
-          if (inside) force += p->internal[0][i] * p->volume[i];
+          if (inside) force += p->internal.row[0][i] * p->volume[i];
         }
         work += (before + force) / 2 * (next - opening);
         before = force;
@@ -207,8 +207,8 @@ static void a_pulled_bar_softens_alike_for_any_number_of_threads_and_keeps_its_e
     assert_true(gone > 0);
     assert_true(solver_energy(&model->solver).imbalance < 0.01);
     size_t bytes = sizeof(double) * (size_t)p->places;
-    if (!reference) reference = memcpy(malloc(bytes), p->displacement[0], bytes);
-    assert_memory_equal(reference, p->displacement[0], bytes);
+    if (!reference) reference = memcpy(malloc(bytes), p->displacement.row[0], bytes);
+    assert_memory_equal(reference, p->displacement.row[0], bytes);
     breccia_model_destroy(&model);
   }
   free(reference);
@@ -316,22 +316,22 @@ static void a_body_in_two_blocks_is_as_one(void **state)
       const Particles *p = model[n]->domain.particles;
       for (int64_t i = 0; i < p->places; ++i)
         for (int k = 0; k < dimensions; ++k)
-          p->displacement[k][i] =
+          p->displacement.row[k][i] =
               1e-4 * sin(13 * p->position[0][i] + 17 * p->position[1][i] + 7 * p->position[2][i] + k);
       compute_forces(model[n]);
     }
     const Particles *p = model[0]->domain.particles, *q = model[1]->domain.particles;
     assert_int_equal(p->count, q->count);
     double largest = 0;
-    for (int64_t i = 0; i < p->places; ++i) largest = larger_of(largest, fabs(p->internal[0][i]));
+    for (int64_t i = 0; i < p->places; ++i) largest = larger_of(largest, fabs(p->internal.row[0][i]));
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       const double at[3] = {p->position[0][i], p->position[1][i], p->position[2][i]};
       const int32_t j = particles_nearest(q, at);
       for (int k = 0; k < dimensions; ++k)
-        if (!(fabs(p->internal[k][i] - q->internal[k][j]) <= 1e-6 * largest))
+        if (!(fabs(p->internal.row[k][i] - q->internal.row[k][j]) <= 1e-6 * largest))
           fail_msg("%s%s: force %g in one block, %g in two at [%g, %g, %g]", laws[c % 2], keys[c / 2 % 3],
-                   p->internal[k][i], q->internal[k][j], at[0], at[1], at[2]);
+                   p->internal.row[k][i], q->internal.row[k][j], at[0], at[1], at[2]);
     }
     for (int n = 0; n < 2; ++n) breccia_model_destroy(&model[n]);
   }

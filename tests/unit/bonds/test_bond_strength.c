@@ -107,7 +107,7 @@ static double strip_peak(const char *law, const char *lattice, const char *horiz
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       if (p->position[0][i] * along[0] + p->position[1][i] * along[1] > STRIP_LENGTH - 20)
-        force -= p->volume[i] * (p->internal[0][i] * along[0] + p->internal[1][i] * along[1]);
+        force -= p->volume[i] * (p->internal.row[0][i] * along[0] + p->internal.row[1][i] * along[1]);
     }
   }
   breccia_model_destroy(&m);

@@ -71,7 +71,8 @@ static Exact exact_bond(const Domain *d, const Ordinary *o, int64_t slice, int64
   long double along = 0;
   for (int k = 0; k < 3; ++k) {
     const long double xi = (long double)p->position[k][bond.neighbour] - (long double)p->position[k][place],
-                      eta = (long double)p->displacement[k][bond.neighbour] - (long double)p->displacement[k][place];
+                      eta = (long double)p->displacement.row[k][bond.neighbour] -
+                            (long double)p->displacement.row[k][place];
     e.y[k] = xi + eta;
     e.length += xi * xi;
     e.now += e.y[k] * e.y[k];
@@ -143,7 +144,7 @@ static void check_forces(breccia_model *model, const char *what, double size, do
     double whole;
     exact_force(model, dilatation, place, size, force, &whole);
     for (int k = 0; k < 3; ++k)
-      worst = larger_of(worst, (double)fabsl((long double)p->internal[k][place] - force[k]) / whole);
+      worst = larger_of(worst, (double)fabsl((long double)p->internal.row[k][place] - force[k]) / whole);
   }
   free(dilatation);
   if (!(worst <= tolerance)) fail_msg("%s: forces differ by %g of what they are sums of", what, worst);
@@ -170,7 +171,7 @@ static void displace(breccia_model *model, double by)
   const Particles *p = model->domain.particles;
   uint64_t seed = 5;
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = by * (random_uniform(&seed) - 0.5);
+    for (int k = 0; k < 3; ++k) p->displacement.row[k][p->place_of[n]] = by * (random_uniform(&seed) - 0.5);
 }
 
 /** Displacements are numbers of their own, differences of which have no more error than they: forces have all digits of the stretches. */
@@ -201,10 +202,10 @@ static void bodies_at_rest_have_no_forces_at_all(void **state)
       if (broken) break_some(model);
       for (int moved = 0; moved < 2; ++moved) {
         deform_uniformly(model, (double[]){1, 0, 0, 0, 1, 0, 0, 0, 1});
-        for (int64_t place = 0; place < p->places && moved; ++place) p->displacement[1][place] += 0.3;
+        for (int64_t place = 0; place < p->places && moved; ++place) p->displacement.row[1][place] += 0.3;
         compute_forces(model);
         for (int64_t place = 0; place < p->places; ++place)
-          for (int c = 0; c < 3; ++c) assert_true(p->internal[c][place] == 0);
+          for (int c = 0; c < 3; ++c) assert_true(p->internal.row[c][place] == 0);
       }
     }
     breccia_model_destroy(&model);
@@ -225,7 +226,7 @@ static void turned_bodies_have_no_forces(void **state)
       long double force[3], *none = calloc((size_t)p->places, sizeof *none);
       double whole;
       exact_force(model, none, p->place_of[n], 1, force, &whole);
-      for (int c = 0; c < 3; ++c) assert_near(p->internal[c][p->place_of[n]], 0, 4e-15 * whole);
+      for (int c = 0; c < 3; ++c) assert_near(p->internal.row[c][p->place_of[n]], 0, 4e-15 * whole);
       free(none);
     }
     breccia_model_destroy(&model);

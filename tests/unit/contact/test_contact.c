@@ -20,7 +20,8 @@ static breccia_model *blocks_at(double safety, const char *formulation, const ch
       "%ssolve: {explicit: {steps: 1000000, safety: %g}}\n",
       law, formulation, contact, safety);
   const Particles *p = model->domain.particles;
-  for (int32_t n = 0; n < p->count; ++n) p->velocity[0][p->place_of[n]] = p->block[p->place_of[n] / SLICE] ? -15 : 15;
+  for (int32_t n = 0; n < p->count; ++n)
+    p->velocity.row[0][p->place_of[n]] = p->block[p->place_of[n] / SLICE] ? -15 : 15;
   return model;
 }
 
@@ -42,8 +43,8 @@ static Motion motion_of(const breccia_model *model)
     const int32_t i = p->place_of[n];
     double x[3], v[3], mass = p->density[i] * p->volume[i];
     for (int k = 0; k < 3; ++k) {
-      x[k] = p->position[k][i] + p->displacement[k][i];
-      v[k] = mass * p->velocity[k][i];
+      x[k] = p->position[k][i] + p->displacement.row[k][i];
+      v[k] = mass * p->velocity.row[k][i];
       m.momentum[k] += v[k];
       m.size += fabs(v[k]);
     }
@@ -74,7 +75,7 @@ static void two_bodies_that_meet_bounce_and_keep_their_momentum(void **state)
       nearest = fmin(nearest, motion_of(model).gap);
       const Particles *p = model->domain.particles;
       for (int64_t i = 0; i < p->places; ++i)
-        impulse += 10 * breccia_model_time_step(model) * fabs(p->internal[0][i]) * p->volume[i];
+        impulse += 10 * breccia_model_time_step(model) * fabs(p->internal.row[0][i]) * p->volume[i];
     }
     Motion after = motion_of(model);
     assert_true(nearest > 0.004 && nearest < 0.0135); /* they touched and did not pass through each other */
@@ -102,7 +103,7 @@ static void pairs_are_found_before_they_press(void **state)
     const Particles *p = models[always]->domain.particles;
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n], sign = p->block[i / SLICE] ? -1 : 1;
-      for (int k = 0; k < 3; ++k) p->velocity[k][i] = sign * (k ? 15 : 18);
+      for (int k = 0; k < 3; ++k) p->velocity.row[k][i] = sign * (k ? 15 : 18);
     }
   }
   const Particles *p = models[0]->domain.particles, *q = models[1]->domain.particles;
@@ -111,7 +112,7 @@ static void pairs_are_found_before_they_press(void **state)
     contact_search(contact_of(&models[1]->domain));
     for (int always = 0; always < 2; ++always) step_surely(models[always], 1);
     for (int64_t i = 0; i < p->places; ++i)
-      for (int k = 0; k < 3; ++k) apart = larger_of(apart, fabs(p->displacement[k][i] - q->displacement[k][i]));
+      for (int k = 0; k < 3; ++k) apart = larger_of(apart, fabs(p->displacement.row[k][i] - q->displacement.row[k][i]));
   }
   assert_true(solver_energy(&models[0]->solver).kinetic < 0.99 * models[0]->solver.ledger.kinetic_at_start);
   print_message("pairs found when due: %.3g m apart from those found at every step\n", apart);
@@ -146,12 +147,13 @@ static void particles_at_rest_and_bonds_feel_no_contact(void **state)
     for (int on = 0; on < 2; ++on) {
       compute_forces(model[on]);
       const Particles *p = model[on]->domain.particles;
-      for (int64_t i = 0; cut && i < p->places; ++i) assert_true(p->internal[0][i] == 0);
+      for (int64_t i = 0; cut && i < p->places; ++i) assert_true(p->internal.row[0][i] == 0);
       if (!cut) deform_uniformly(model[on], squeeze);
       compute_forces(model[on]);
     }
     const Particles *p = model[0]->domain.particles, *q = model[1]->domain.particles;
-    for (int k = 0; k < 3; ++k) assert_memory_equal(p->internal[k], q->internal[k], sizeof(double) * (size_t)p->places);
+    for (int k = 0; k < 3; ++k)
+      assert_memory_equal(p->internal.row[k], q->internal.row[k], sizeof(double) * (size_t)p->places);
     breccia_model_destroy(&model[0]);
     breccia_model_destroy(&model[1]);
   }
@@ -174,32 +176,32 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
     assert_true(family_break(&d->family, a, b));
     d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
     d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
-    p->displacement[0][b] = -0.004;
+    p->displacement.row[0][b] = -0.004;
     compute_forces(model);
-    const double without = p->internal[0][a];
-    if (!pressed) p->displacement[0][b] = 0;
+    const double without = p->internal.row[0][a];
+    if (!pressed) p->displacement.row[0][b] = 0;
     contact_bond_broke(contact_of(d), a, b);
-    p->displacement[0][b] = pressed ? -0.0041 : -0.004;
+    p->displacement.row[0][b] = pressed ? -0.0041 : -0.004;
     compute_forces(model);
     /* Bonds calibrated in uniform expansion: sum c L V / 2 = 6 E, here over 26 neighbours, of which a column with free sides shows 5/6. */
     const double moment = (6 + 12 * sqrt(2) + 8 * sqrt(3)) * 0.01 * 1e-6, c = 5.0 / 6 * 6 * 3e6 / (moment / 2);
-    if (!pressed) assert_near(p->internal[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
-    const double before = p->internal[0][a];
+    if (!pressed) assert_near(p->internal.row[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
+    const double before = p->internal.row[0][a];
     contact_search(contact_of(d)); /* found again, it is the same */
     compute_forces(model);
-    assert_true(p->internal[0][a] == before);
+    assert_true(p->internal.row[0][a] == before);
     if (pressed) {
-      p->displacement[0][b] = -0.004;
+      p->displacement.row[0][b] = -0.004;
       compute_forces(model);
-      assert_near(p->internal[0][a], without, 1e-9 * c * 1e-6); /* nothing happens where it broke */
+      assert_near(p->internal.row[0][a], without, 1e-9 * c * 1e-6); /* nothing happens where it broke */
       contact_bond_mended(contact_of(d), a, b);
-      p->displacement[0][b] = -0.006;
+      p->displacement.row[0][b] = -0.006;
       compute_forces(model);
-      const double mended = p->internal[0][a];
+      const double mended = p->internal.row[0][a];
       contact_bond_broke(contact_of(d), a, b);
-      p->displacement[0][b] = -0.007;
+      p->displacement.row[0][b] = -0.007;
       compute_forces(model);
-      assert_true(p->internal[0][a] < mended - c * 0.05 * 1e-6);
+      assert_true(p->internal.row[0][a] < mended - c * 0.05 * 1e-6);
     }
     breccia_model_destroy(&model);
   }
@@ -226,15 +228,15 @@ static void a_pair_of_two_materials_resists_as_the_mean_of_both(void **state)
     assert_true(family_break(&d->family, a, b));
     d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
     d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
-    p->displacement[0][b] = -0.004;
+    p->displacement.row[0][b] = -0.004;
     compute_forces(model);
-    const double without = p->internal[0][a];
-    p->displacement[0][b] = 0;
+    const double without = p->internal.row[0][a];
+    p->displacement.row[0][b] = 0;
     contact_bond_broke(contact_of(d), a, b);
-    p->displacement[0][b] = -0.004;
+    p->displacement.row[0][b] = -0.004;
     compute_forces(model);
     const double moment = (6 + 12 * sqrt(2) + 8 * sqrt(3)) * 0.01 * 1e-6, c = 5.0 / 6 * 6 * 6e6 / (moment / 2);
-    assert_near(p->internal[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
+    assert_near(p->internal.row[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
     breccia_model_destroy(&model);
   }
 }
@@ -246,14 +248,14 @@ static double *contact_forces(breccia_model *model)
   const Particles *p = d->particles;
   double *force = malloc(3 * sizeof *force * (size_t)p->places);
   compute_forces(model);
-  for (int k = 0; k < 3; ++k) memcpy(force + k * p->places, p->internal[k], sizeof *force * (size_t)p->places);
+  for (int k = 0; k < 3; ++k) memcpy(force + k * p->places, p->internal.row[k], sizeof *force * (size_t)p->places);
   const Forces forces = d->forces;
   d->forces.count = 0;
   compute_forces(model);
   d->forces = forces;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i)
-      force[k * p->places + i] = (force[k * p->places + i] - p->internal[k][i]) * p->volume[i];
+      force[k * p->places + i] = (force[k * p->places + i] - p->internal.row[k][i]) * p->volume[i];
   return force;
 }
 
@@ -277,7 +279,7 @@ static void faces_that_meet_press_as_a_layer_of_both_bodies(void **state)
     compute_forces(model);
     for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
       for (int64_t i = 0; i < p->places; ++i)
-        if (p->block[i / SLICE]) p->displacement[2][i] = near ? -0.02 - gap : -0.0199;
+        if (p->block[i / SLICE]) p->displacement.row[2][i] = near ? -0.02 - gap : -0.0199;
       contact_search(contact_of(d));
       compute_forces(model);
     }
@@ -302,7 +304,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
     const int32_t i = p->place_of[n];
     double x[3], f[3];
     for (int k = 0; k < 3; ++k) {
-      x[k] = p->position[k][i] + p->displacement[k][i];
+      x[k] = p->position[k][i] + p->displacement.row[k][i];
       sum[k] += f[k] = force[k * p->places + i];
       largest = larger_of(largest, fabs(f[k]));
     }
@@ -316,13 +318,13 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
   for (int64_t n = 0; n < p->count; n += under_sanitizers() ? 12 : 3) {
     const int32_t i = p->place_of[n];
     for (int k = 0; k < d->body.dimensions; ++k) {
-      const double h = 1e-5 * spacing, here = p->displacement[k][i];
+      const double h = 1e-5 * spacing, here = p->displacement.row[k][i];
       double energy[2];
       for (int side = 0; side < 2; ++side) {
-        p->displacement[k][i] = here + (side ? h : -h);
+        p->displacement.row[k][i] = here + (side ? h : -h);
         energy[side] = contact_energy(contact_of(d));
       }
-      p->displacement[k][i] = here;
+      p->displacement.row[k][i] = here;
       worst = larger_of(worst, fabs((energy[1] - energy[0]) / (2 * h) + force[k * p->places + i]));
       checked += fabs(force[k * p->places + i]) > 1e-3 * largest;
     }
@@ -339,9 +341,9 @@ static void wave(const breccia_model *model, double size, double amplitude)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const double x = p->position[0][i] / size, y = p->position[1][i] / size, z = p->position[2][i] / size;
-    p->displacement[0][i] += amplitude * size * sin(3 * y + 2 * z);
-    p->displacement[1][i] += amplitude * size * sin(2 * x + 3 * z);
-    if (model->domain.body.dimensions == 3) p->displacement[2][i] += amplitude * size * sin(3 * x - 2 * y);
+    p->displacement.row[0][i] += amplitude * size * sin(3 * y + 2 * z);
+    p->displacement.row[1][i] += amplitude * size * sin(2 * x + 3 * z);
+    if (model->domain.body.dimensions == 3) p->displacement.row[2][i] += amplitude * size * sin(3 * x - 2 * y);
   }
 }
 
@@ -355,12 +357,12 @@ static void rotate(const breccia_model *model)
     const int32_t i = p->place_of[n];
     double x[3], along = 0;
     for (int k = 0; k < 3; ++k) {
-      x[k] = p->position[k][i] + p->displacement[k][i];
+      x[k] = p->position[k][i] + p->displacement.row[k][i];
       along += a[k] * x[k];
     }
     for (int k = 0; k < 3; ++k)
-      p->displacement[k][i] = c * x[k] + s * (a[(k + 1) % 3] * x[(k + 2) % 3] - a[(k + 2) % 3] * x[(k + 1) % 3]) +
-                              (1 - c) * along * a[k] - p->position[k][i];
+      p->displacement.row[k][i] = c * x[k] + s * (a[(k + 1) % 3] * x[(k + 2) % 3] - a[(k + 2) % 3] * x[(k + 1) % 3]) +
+                                  (1 - c) * along * a[k] - p->position[k][i];
   }
 }
 
@@ -384,10 +386,10 @@ static void forces_are_the_derivative_of_the_energy(void **state)
     const Particles *p = model->domain.particles;
     const int across = plane ? 1 : 2;
     const double level = plane ? 0.05 : 0.04;
-    for (int64_t i = 0; i < p->places; ++i) p->displacement[across][i] = p->position[across][i] > level ? -4e-4 : 0;
+    for (int64_t i = 0; i < p->places; ++i) p->displacement.row[across][i] = p->position[across][i] > level ? -4e-4 : 0;
     wave(model, 0.06, 0.01);
     check_derivative(model, 0.01, "pressed");
-    for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] += p->position[across][i] > level ? 0.0137 : 0;
+    for (int64_t i = 0; i < p->places; ++i) p->displacement.row[0][i] += p->position[across][i] > level ? 0.0137 : 0;
     contact_search(contact_of(&model->domain));
     check_derivative(model, 0.01, "slid");
     rotate(model);
@@ -414,13 +416,13 @@ static void forces_are_the_derivative_of_the_energy(void **state)
       d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
     }
     for (int64_t i = 0; i < p->places; ++i)
-      if (p->block[i / SLICE]) p->displacement[2][i] = -0.0199;
+      if (p->block[i / SLICE]) p->displacement.row[2][i] = -0.0199;
     contact_search(contact_of(d)); /* nearly touching: it chooses its faces */
     compute_forces(model);
     wave(model, 0.06, 0.004);
     for (int64_t i = 0; i < p->places; ++i)
-      if (p->block[i / SLICE]) p->displacement[2][i] -= 6e-4;
-    if (broken) p->displacement[0][p->place_of[6 * 5 * 2 + 8]] += 2e-3;
+      if (p->block[i / SLICE]) p->displacement.row[2][i] -= 6e-4;
+    if (broken) p->displacement.row[0][p->place_of[6 * 5 * 2 + 8]] += 2e-3;
     check_derivative(model, 0.01, broken ? "unlike, broken" : "unlike");
     rotate(model);
     check_derivative(model, 0.01, "unlike, turned");
@@ -444,12 +446,12 @@ static void families_of_unlike_particles_feel_contact_as_its_energy_says(void **
   const Particles *p = d->particles;
   compute_forces(model);
   for (int64_t i = 0; i < p->places; ++i)
-    if (p->block[i / SLICE] == 2) p->displacement[2][i] = -0.0199;
+    if (p->block[i / SLICE] == 2) p->displacement.row[2][i] = -0.0199;
   contact_search(contact_of(d));
   compute_forces(model);
   wave(model, 0.06, 0.004);
   for (int64_t i = 0; i < p->places; ++i)
-    if (p->block[i / SLICE] == 2) p->displacement[2][i] -= 6e-4;
+    if (p->block[i / SLICE] == 2) p->displacement.row[2][i] -= 6e-4;
   check_derivative(model, 0.01, "joined");
   breccia_model_destroy(&model);
 }
@@ -490,8 +492,8 @@ static void bodies_of_unlike_spacing_that_meet_keep_their_momentum(void **state)
     const Particles *p = model->domain.particles;
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      p->velocity[0][i] = p->block[i / SLICE] ? -15 : 15;
-      p->velocity[1][i] = p->block[i / SLICE] ? 5 : 0;
+      p->velocity.row[0][i] = p->block[i / SLICE] ? -15 : 15;
+      p->velocity.row[1][i] = p->block[i / SLICE] ? 5 : 0;
     }
     const Motion before = motion_of(model);
     while (breccia_model_time(model) < (under_sanitizers() ? 1.8e-3 : 2.6e-3)) step_surely(model, 10);

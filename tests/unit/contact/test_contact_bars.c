@@ -25,10 +25,10 @@ static Bar bar_of(const breccia_model *m, int block)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (p->block[i / SLICE] != block) continue;
-    const double mass = p->density[i] * p->volume[i], x = p->position[0][i] + p->displacement[0][i];
+    const double mass = p->density[i] * p->volume[i], x = p->position[0][i] + p->displacement.row[0][i];
     bar.mass += mass;
-    bar.velocity += mass * p->velocity[0][i];
-    bar.force += p->internal[0][i] * p->volume[i];
+    bar.velocity += mass * p->velocity.row[0][i];
+    bar.force += p->internal.row[0][i] * p->volume[i];
     bar.low = fmin(bar.low, x);
     bar.high = fmax(bar.high, x);
   }
@@ -79,7 +79,8 @@ static void bars_that_are_pressed_together_have_a_layer_between_them(void **stat
     /* The first bar is held at its left end, whose particle takes the force that goes through the bar. */
     double through = 0;
     for (int64_t n = 0; n < p->count; ++n)
-      if (p->position[0][p->place_of[n]] < -3.9) through += p->internal[0][p->place_of[n]] * p->volume[p->place_of[n]];
+      if (p->position[0][p->place_of[n]] < -3.9)
+        through += p->internal.row[0][p->place_of[n]] * p->volume[p->place_of[n]];
     const double gap = (0.1 + 0.08) / 2 - (b.low - a.high), force = stiffness[k] * mean * 0.013 * gap / 0.09;
     assert_true(gap > 0);
     assert_near(-through, force, 1e-6 * force);

@@ -33,7 +33,7 @@ static double mean_motion(const breccia_model *model, int axis, double height, i
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if ((p->position[2][i] - height) * side < 0) continue;
-    sum += p->displacement[axis][i];
+    sum += p->displacement.row[axis][i];
     ++count;
   }
   return sum / count;
@@ -65,14 +65,14 @@ static void the_order_of_blocks_changes_nothing(void **state)
       for (int64_t n = 0; n < p->count; ++n) {
         const int32_t i = p->place_of[n];
         if (p->position[1][i] < 0.08) continue;
-        p->displacement[1][i] = -2e-5;
-        p->displacement[0][i] = 1e-5 + 1e-4 * p->position[0][i];
+        p->displacement.row[1][i] = -2e-5;
+        p->displacement.row[0][i] = 1e-5 + 1e-4 * p->position[0][i];
       }
       compute_forces(m);
       double sum[2] = {0};
       for (int64_t n = 0; n < p->count; ++n) {
         const int32_t i = p->place_of[n];
-        for (int c = 0; c < 2 && p->position[1][i] > 0.08; ++c) sum[c] += p->volume[i] * p->internal[c][i];
+        for (int c = 0; c < 2 && p->position[1][i] > 0.08; ++c) sum[c] += p->volume[i] * p->internal.row[c][i];
       }
       for (int c = 0; c < 2; ++c) pressed[turned][c] = sum[c];
       Team *before = team_use(m->team);
@@ -155,10 +155,10 @@ static void a_closed_cut_is_as_stiff_as_the_body_and_opens_freely(void **state)
       assert_true(solver_energy(&model->solver).kinetic < 1e-6 * solver_energy(&model->solver).external);
       if (cut) { /* apart, the halves know nothing of each other */
         const Particles *p = model->domain.particles;
-        for (int c = 0; c < 3; ++c) memset(p->displacement[c], 0, sizeof(double) * (size_t)p->places);
-        for (int64_t i = 0; i < p->places; ++i) p->displacement[2][i] = p->position[2][i] > 0.09 ? 1e-6 : 0;
+        for (int c = 0; c < 3; ++c) memset(p->displacement.row[c], 0, sizeof(double) * (size_t)p->places);
+        for (int64_t i = 0; i < p->places; ++i) p->displacement.row[2][i] = p->position[2][i] > 0.09 ? 1e-6 : 0;
         compute_forces(model);
-        for (int64_t i = 0; i < p->places; ++i) assert_near(p->internal[2][i], 0, k ? 1e-3 : 0);
+        for (int64_t i = 0; i < p->places; ++i) assert_near(p->internal.row[2][i], 0, k ? 1e-3 : 0);
       }
       breccia_model_destroy(&model);
     }
@@ -183,8 +183,8 @@ static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
     const Particles *p = model->domain.particles;
     for (int64_t i = 0; i < p->places; ++i) {
       const double side = p->position[2][i] > 0.04 ? 1 : -1;
-      p->velocity[0][i] = side * 5;
-      p->velocity[2][i] = side * -0.5;
+      p->velocity.row[0][i] = side * 5;
+      p->velocity.row[2][i] = side * -0.5;
     }
     double most = 0;
     while (breccia_model_time(model) < (under_sanitizers() ? 1e-4 : 2e-3)) {
@@ -208,7 +208,7 @@ static void force_above(const breccia_model *model, double height, double force[
   for (int k = 0; k < 3; ++k) force[k] = 0;
   for (int64_t i = 0; i < p->places; ++i)
     for (int k = 0; k < 3; ++k)
-      if (p->position[2][i] > height) force[k] += p->internal[k][i] * p->volume[i];
+      if (p->position[2][i] > height) force[k] += p->internal.row[k][i] * p->volume[i];
 }
 
 static void faces_of_a_cut_slide_freely_or_with_coulombs_friction(void **state)
@@ -225,8 +225,8 @@ static void faces_of_a_cut_slide_freely_or_with_coulombs_friction(void **state)
       double force[3], all[3];
       for (int64_t i = 0; i < p->places; ++i) {
         const bool upper = p->position[2][i] > 0.09;
-        p->displacement[0][i] = upper ? 1e-4 * step : 0;
-        p->displacement[2][i] = upper ? -1e-5 : 0;
+        p->displacement.row[0][i] = upper ? 1e-4 * step : 0;
+        p->displacement.row[2][i] = upper ? -1e-5 : 0;
       }
       compute_forces(model);
       contact_commit(contact_of(&model->domain));
@@ -264,8 +264,8 @@ static breccia_model *sliding_block(double spacing, double friction, double alon
   const Particles *p = model->domain.particles;
   for (int64_t i = 0; i < p->places; ++i) {
     if (p->block[i / SLICE] == 0 || p->number[i] < 0) continue;
-    p->displacement[2][i] = -0.1 - 1.2e-6; /* nearly as deep as its weight presses it */
-    p->velocity[0][i] = speed;
+    p->displacement.row[2][i] = -0.1 - 1.2e-6; /* nearly as deep as its weight presses it */
+    p->velocity.row[0][i] = speed;
   }
   contact_search(contact_of(&model->domain));
   return model;

@@ -40,7 +40,7 @@ static double space_between(const breccia_model *model, int axis)
   double top = -INFINITY, bottom = INFINITY;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    const double x = p->position[axis][i] + p->displacement[axis][i];
+    const double x = p->position[axis][i] + p->displacement.row[axis][i];
     if (p->block[i / SLICE])
       bottom = fmin(bottom, x);
     else
@@ -54,7 +54,7 @@ static void lower(breccia_model *model, int axis, double way, bool choose)
 {
   const Particles *p = model->domain.particles;
   for (int64_t i = 0; i < p->places; ++i)
-    if (p->block[i / SLICE]) p->displacement[axis][i] -= way;
+    if (p->block[i / SLICE]) p->displacement.row[axis][i] -= way;
   if (choose) contact_search(contact_of(model));
   for (int turn = 0; turn < 2; ++turn) {
     compute_forces(model);
@@ -139,7 +139,7 @@ static void unlike_spacings_press_like_a_layer_of_both(void **state)
     double force = 0;
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      if (p->block[i / SLICE]) force += p->volume[i] * p->internal[1][i];
+      if (p->block[i / SLICE]) force += p->volume[i] * p->internal.row[1][i];
     }
     const Contact *c = contact_of(m);
     const double pressed = c->spec->stiffness * c->young[0] * gap / 0.015 * 0.08 * 0.1;
@@ -154,7 +154,7 @@ static void fly(const breccia_model *model, int axis, double speed)
   const Particles *p = model->domain.particles;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->velocity[axis][i] = p->block[i / SLICE] ? -speed : speed;
+    p->velocity.row[axis][i] = p->block[i / SLICE] ? -speed : speed;
   }
 }
 
@@ -222,8 +222,8 @@ static void friction_restarts_to_the_same_bits(void **state)
   assert_true(contact_energy(contact_of(run[2])) == contact_energy(contact_of(run[0])));
   for (int k = 0; k < 3; ++k) {
     const size_t bytes = sizeof(double) * (size_t)p->places;
-    assert_memory_equal(run[2]->domain.particles->displacement[k], p->displacement[k], bytes);
-    assert_memory_equal(run[2]->domain.particles->velocity[k], p->velocity[k], bytes);
+    assert_memory_equal(run[2]->domain.particles->displacement.row[k], p->displacement.row[k], bytes);
+    assert_memory_equal(run[2]->domain.particles->velocity.row[k], p->velocity.row[k], bytes);
   }
   for (int k = 0; k < 3; ++k) breccia_model_destroy(&run[k]);
   snprintf(command, sizeof command, "rm -r %s", folder);
@@ -235,9 +235,9 @@ static void turn(breccia_model *model, double angle)
 {
   const Particles *p = model->domain.particles;
   for (int64_t i = 0; i < p->places; ++i) {
-    const double y = p->position[1][i] + p->displacement[1][i], z = p->position[2][i] + p->displacement[2][i];
-    p->displacement[1][i] = cos(angle) * y - sin(angle) * z - p->position[1][i];
-    p->displacement[2][i] = sin(angle) * y + cos(angle) * z - p->position[2][i];
+    const double y = p->position[1][i] + p->displacement.row[1][i], z = p->position[2][i] + p->displacement.row[2][i];
+    p->displacement.row[1][i] = cos(angle) * y - sin(angle) * z - p->position[1][i];
+    p->displacement.row[2][i] = sin(angle) * y + cos(angle) * z - p->position[2][i];
   }
   contact_follow(contact_of(model), 0.2 * fabs(angle));
   compute_forces(model);
@@ -253,7 +253,7 @@ static void bodies_in_contact_that_rotate_feel_no_friction(void **state)
     lower(m, 2, space_between(m, 2) - 0.0101, true);
     lower(m, 2, 3e-4, false);
     for (int64_t i = 0; i < p->places; ++i)
-      if (p->block[i / SLICE]) p->displacement[1][i] += 2e-5; /* it sticks */
+      if (p->block[i / SLICE]) p->displacement.row[1][i] += 2e-5; /* it sticks */
     turn(m, 0);
     const double held = contact_energy(contact_of(m)), slid = contact_of(m)->friction_work;
     assert_true(held > 0 && slid < 0.2 * held);
@@ -262,10 +262,11 @@ static void bodies_in_contact_that_rotate_feel_no_friction(void **state)
       turn(m, 0.01);
       for (int32_t k = 0; k < p->count; ++k) {
         const int32_t i = p->place_of[k];
-        const double y = p->position[1][i] + p->displacement[1][i], z = p->position[2][i] + p->displacement[2][i];
-        for (int c = 0; c < 3; ++c) force[c] += p->internal[c][i] * p->volume[i];
-        torque += (y * p->internal[2][i] - z * p->internal[1][i]) * p->volume[i];
-        size += fabs(p->internal[2][i]) * p->volume[i];
+        const double y = p->position[1][i] + p->displacement.row[1][i],
+                     z = p->position[2][i] + p->displacement.row[2][i];
+        for (int c = 0; c < 3; ++c) force[c] += p->internal.row[c][i] * p->volume[i];
+        torque += (y * p->internal.row[2][i] - z * p->internal.row[1][i]) * p->volume[i];
+        size += fabs(p->internal.row[2][i]) * p->volume[i];
       }
       for (int c = 0; c < 3; ++c) assert_near(force[c], 0, 1e-9 * size);
       assert_near(torque, 0, 1e-9 * size);
@@ -291,8 +292,8 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
       fly(m, axis, 5);
       for (int64_t i = 0; i < p->places; ++i)
         for (int c = 0; c < 3; ++c) {
-          before[c] += p->density[i] * p->volume[i] * p->velocity[c][i];
-          size += fabs(p->density[i] * p->volume[i] * p->velocity[c][i]);
+          before[c] += p->density[i] * p->volume[i] * p->velocity.row[c][i];
+          size += fabs(p->density[i] * p->volume[i] * p->velocity.row[c][i]);
         }
       breccia_error *error = breccia_error_create();
       while (m->solver.clock.step < 1500 && !(under_sanitizers() && most > 0)) {
@@ -301,7 +302,7 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
         assert_true(solver_energy(&m->solver).imbalance < 0.02);
       }
       for (int64_t i = 0; i < p->places; ++i)
-        for (int c = 0; c < 3; ++c) after[c] += p->density[i] * p->volume[i] * p->velocity[c][i];
+        for (int c = 0; c < 3; ++c) after[c] += p->density[i] * p->volume[i] * p->velocity.row[c][i];
       for (int c = 0; c < 3; ++c) assert_near(after[c], before[c], 1e-11 * size);
       assert_true(most > 0);
       if (!under_sanitizers()) {

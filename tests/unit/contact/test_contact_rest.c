@@ -2,7 +2,6 @@
 #include "contact/contact.h"
 #include "solver/linear_solver.h"
 #include "solver/matrix.h"
-#include "solver/vectors.h"
 #include "support.h"
 
 #include "base/team.h"
@@ -17,23 +16,23 @@
 /* ---- changes of forces ---- */
 
 /** A smooth motion that shears, turns and strains. */
-static void wave(const breccia_model *m, double amplitude, double *const v[MOTIONS])
+static void wave(const breccia_model *m, double amplitude, const Vector *v)
 {
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const double x = p->position[0][i], y = p->position[1][i], z = p->position[2][i];
-    v[0][i] = amplitude * sin(20 * y + 13 * z + 0.3);
-    v[1][i] = amplitude * sin(17 * x + 11 * z - 0.2);
-    v[2][i] = m->domain.body.dimensions > 2 ? amplitude * sin(12 * x - 19 * y) : 0;
+    v->row[0][i] = amplitude * sin(20 * y + 13 * z + 0.3);
+    v->row[1][i] = amplitude * sin(17 * x + 11 * z - 0.2);
+    v->row[2][i] = m->domain.body.dimensions > 2 ? amplitude * sin(12 * x - 19 * y) : 0;
   }
 }
 
-static void add(const breccia_model *m, double factor, double *const v[MOTIONS])
+static void add(const breccia_model *m, double factor, const Vector *v)
 {
   const Particles *p = m->domain.particles;
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += factor * v[k][i];
+    for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] += factor * v->row[k][i];
 }
 
 /** Compares changes of the forces of contact with differences of them. */
@@ -42,13 +41,13 @@ static void check_changes(breccia_model *m, const char *what)
   Domain *d = &m->domain;
   const Particles *p = d->particles;
   const double h = 1e-9;
-  double *v[MOTIONS] = {0}, *change[MOTIONS] = {0}, *forces[2][MOTIONS] = {{0}};
-  assert_true(vectors_make(v, p, "test", NULL) && vectors_make(change, p, "test", NULL));
-  assert_true(vectors_make(forces[0], p, "test", NULL) && vectors_make(forces[1], p, "test", NULL));
+  Vector v[1] = {{0}}, change[1] = {{0}}, forces[2] = {{0}};
+  assert_true(vector_create(v, &p->space, "test", NULL) && vector_create(change, &p->space, "test", NULL));
+  assert_true(vector_create(&forces[0], &p->space, "test", NULL) && vector_create(&forces[1], &p->space, "test", NULL));
   wave(m, 1, v);
   for (int side = 0; side < 2; ++side) {
     add(m, side ? h : -h, v);
-    domain_forces_beside(d, NULL, forces[side]);
+    domain_forces_beside(d, NULL, &forces[side]);
     add(m, side ? -h : h, v);
   }
   domain_evaluate(d, NULL);
@@ -57,14 +56,14 @@ static void check_changes(breccia_model *m, const char *what)
   double largest = 0, worst = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      const double expected = (forces[1][k][i] - forces[0][k][i]) / (2 * h);
+      const double expected = (forces[1].row[k][i] - forces[0].row[k][i]) / (2 * h);
       largest = larger_of(largest, fabs(expected));
-      worst = larger_of(worst, fabs(change[k][i] - expected));
+      worst = larger_of(worst, fabs(change->row[k][i] - expected));
     }
   print_message("%s: %.1e\n", what, worst / largest);
   assert_true(largest > 0);
   if (!(worst <= 3e-4 * largest)) fail_msg("%s: changes of forces are off by %g", what, worst / largest);
-  vectors_free(v), vectors_free(change), vectors_free(forces[0]), vectors_free(forces[1]);
+  vector_destroy(v), vector_destroy(change), vector_destroy(&forces[0]), vector_destroy(&forces[1]);
 }
 
 static breccia_model *cut_block(const char *space, const char *contact)
@@ -108,8 +107,8 @@ static void changes_of_forces_are_those_of_small_motions(void **state)
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       if (p->position[1][i] < 0.04) continue;
-      p->displacement[0][i] += c * 1e-6;
-      p->displacement[1][i] += s * 1e-6;
+      p->displacement.row[0][i] += c * 1e-6;
+      p->displacement.row[1][i] += s * 1e-6;
     }
     domain_evaluate(d, NULL);
     check_changes(m, "sliding");
@@ -137,7 +136,7 @@ static breccia_model *unlike_blocks(const char *space, double gap)
   domain_evaluate(d, NULL);
   for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
     for (int64_t i = 0; i < p->places; ++i)
-      if (p->block[i / SLICE] == 2) p->displacement[plane ? 1 : 2][i] = near ? -0.02 - gap : -0.0199;
+      if (p->block[i / SLICE] == 2) p->displacement.row[plane ? 1 : 2][i] = near ? -0.02 - gap : -0.0199;
     contact_search(d->forces.own[FORCES_contact]);
     domain_evaluate(d, NULL);
   }
@@ -160,8 +159,8 @@ static void check_matrix(breccia_model *m)
   LinearSolver solver = {
       .domain = d, .loading = &m->loading, .unknowns = unknowns_of(d, &m->loading), .stiffness_share = 0.3};
   Matrix matrix = {0};
-  double *v[MOTIONS] = {0}, *kv[MOTIONS] = {0};
-  assert_true(vectors_make(v, p, "test", NULL) && vectors_make(kv, p, "test", NULL));
+  Vector v[1] = {{0}}, kv[1] = {{0}};
+  assert_true(vector_create(v, &p->space, "test", NULL) && vector_create(kv, &p->space, "test", NULL));
   assert_int_equal(domain_linearise(d, NULL, NULL), 0);
   forces_linearise(&d->forces);
   assert_true(((const Contact *)d->forces.own[0])->joint_count >= 10);
@@ -183,7 +182,7 @@ static void check_matrix(breccia_model *m)
   assert_near(most, 0, 1e-10 * largest);
   free(x), free(y);
   matrix_destroy(&matrix);
-  vectors_free(v), vectors_free(kv);
+  vector_destroy(v), vector_destroy(kv);
 }
 
 static void points_of_pairs_are_what_the_matrix_needs(void **state)
@@ -211,7 +210,7 @@ static double top_of(const breccia_model *m)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (p->position[1][i] < highest - 1e-9) continue;
-    sum += p->displacement[1][i];
+    sum += p->displacement.row[1][i];
     ++count;
   }
   return sum / (double)count;
@@ -283,7 +282,7 @@ static double push_of(const breccia_model *m)
   const Load *load = &m->loading.loads[m->loading.count - 1];
   double sum = 0;
   for (int64_t n = 0; n < load->selection.count; ++n)
-    sum -= p->volume[load->selection.places[n]] * p->internal[0][load->selection.places[n]];
+    sum -= p->volume[load->selection.places[n]] * p->internal.row[0][load->selection.places[n]];
   return sum;
 }
 
@@ -330,7 +329,7 @@ static void blocks_meet_whatever_way_they_have_come(void **state)
     const Particles *p = m->domain.particles;
     for (int64_t n = 0; n < m->loading.loads[1].selection.count; ++n) {
       const int32_t i = m->loading.loads[1].selection.places[n];
-      carried[k] += p->internal[1][i] * p->volume[i];
+      carried[k] += p->internal.row[1][i] * p->volume[i];
     }
     const Energy e = solver_energy(&m->solver);
     print_message("gap %g: %.6g kN, external %.6g, imbalance %.1e\n", gaps[k], carried[k], e.external, e.imbalance);
@@ -367,7 +366,7 @@ static void flight_of(const breccia_model *m, double v[2])
     const int32_t i = p->place_of[n];
     if (p->position[1][i] < 0.08) continue;
     mass += p->volume[i];
-    for (int k = 0; k < 2; ++k) v[k] += p->volume[i] * p->velocity[k][i];
+    for (int k = 0; k < 2; ++k) v[k] += p->volume[i] * p->velocity.row[k][i];
   }
   for (int k = 0; k < 2; ++k) v[k] /= mass;
 }

@@ -132,8 +132,8 @@ static void increments_that_are_solved_again_do_their_work_once(void **state)
     for (int end = 0; end < 2; ++end) {
       const Selection *held = &m->loading.loads[end].selection;
       double now = 0;
-      for (int64_t n = 0; n < held->count; ++n) now -= p->volume[held->places[n]] * p->internal[0][held->places[n]];
-      const double where = p->displacement[0][held->places[0]];
+      for (int64_t n = 0; n < held->count; ++n) now -= p->volume[held->places[n]] * p->internal.row[0][held->places[n]];
+      const double where = p->displacement.row[0][held->places[0]];
       work += (exerted[end] + now) / 2 * (where - moved[end]);
       largest = larger_of(largest, fabs(work));
       exerted[end] = now;
@@ -167,7 +167,7 @@ static double pushed_with(const breccia_model *m)
   const Load *end = &m->loading.loads[1];
   double sum = 0;
   for (int64_t n = 0; n < end->selection.count; ++n)
-    sum += p->internal[1][end->selection.places[n]] * p->volume[end->selection.places[n]];
+    sum += p->internal.row[1][end->selection.places[n]] * p->volume[end->selection.places[n]];
   return sum;
 }
 
@@ -298,7 +298,7 @@ static double pushed_footing(const char *fades, double strength, double *before,
     carried = 0;
     step_surely(m, 1);
     for (int64_t n = 0; n < foot->selection.count; ++n)
-      carried += p->internal[1][foot->selection.places[n]] * p->volume[foot->selection.places[n]];
+      carried += p->internal.row[1][foot->selection.places[n]] * p->volume[foot->selection.places[n]];
   }
   *held = 0;
   for (int32_t n = 0; n < p->count; ++n) {
@@ -437,7 +437,7 @@ static void nothing_fades_before_the_law_softens(void **state)
   }
   const int64_t places = m->domain.particles->places;
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(m->domain.particles->displacement[k], elastic->domain.particles->displacement[k],
+    assert_memory_equal(m->domain.particles->displacement.row[k], elastic->domain.particles->displacement.row[k],
                         sizeof(double) * (size_t)places);
   assert_int_equal(formulation_of(m)->control, CONTROL_UNIFORM);
   breccia_model_destroy(&m);
@@ -474,14 +474,15 @@ static void forces_of_a_half_torn_bar_are_those_of_its_operator(void **state)
   Operator point = {0};
   breccia_error *error = breccia_error_create();
   for (int64_t i = 0; i < p->places; ++i) {
-    assert_int_equal(correspondence_point(c, p->displacement, i, &point, error), 0);
-    if (point.count) operator_add_forces(&point, p->displacement, sum);
+    assert_int_equal(correspondence_point(c, p->displacement.row, i, &point, error), 0);
+    if (point.count) operator_add_forces(&point, p->displacement.row, sum);
   }
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(sum[k][p->place_of[n]]));
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
-      assert_near(p->internal[k][p->place_of[n]] * p->volume[p->place_of[n]], sum[k][p->place_of[n]], 1e-9 * largest);
+      assert_near(p->internal.row[k][p->place_of[n]] * p->volume[p->place_of[n]], sum[k][p->place_of[n]],
+                  1e-9 * largest);
   operator_destroy(&point);
   breccia_error_destroy(&error);
   for (int k = 0; k < 3; ++k) places_free(&sum[k]);
@@ -505,7 +506,8 @@ static void half_torn_bars_restart_to_the_same_bits(void **state)
   const size_t bytes = sizeof(double) * (size_t)whole->domain.particles->places;
   assert_memory_equal(formulation_of(second)->hold[0], formulation_of(whole)->hold[0], bytes);
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(second->domain.particles->displacement[k], whole->domain.particles->displacement[k], bytes);
+    assert_memory_equal(second->domain.particles->displacement.row[k], whole->domain.particles->displacement.row[k],
+                        bytes);
   breccia_model_destroy(&whole);
   breccia_model_destroy(&first);
   breccia_model_destroy(&second);
@@ -526,8 +528,8 @@ static void what_has_faded_stays_so_as_a_crack_closes(void **state)
   memcpy(before, c->hold[0], bytes);
   for (int k = 0; k < 3; ++k)
     for (int64_t n = 0; n < p->count; ++n) {
-      p->displacement[k][p->place_of[n]] *= 0.1;
-      p->velocity[k][p->place_of[n]] = 0;
+      p->displacement.row[k][p->place_of[n]] *= 0.1;
+      p->velocity.row[k][p->place_of[n]] = 0;
     }
   step_surely(m, 3);
   for (int64_t n = 0; n < p->count; ++n) assert_true(c->hold[0][p->place_of[n]] <= before[p->place_of[n]]);
@@ -543,7 +545,7 @@ static double checkerboard_of(const breccia_model *m)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const long turn = lround(p->position[0][i] / 0.01) + lround(p->position[1][i] / 0.01);
-    sum += (turn % 2 ? -1 : 1) * p->displacement[1][i];
+    sum += (turn % 2 ? -1 : 1) * p->displacement.row[1][i];
   }
   return sum / (double)p->count;
 }
@@ -558,7 +560,7 @@ static void noise_in_a_half_torn_bar_does_not_grow(void **state)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const long turn = lround(p->position[0][i] / 0.01) + lround(p->position[1][i] / 0.01);
-    p->displacement[1][i] += (turn % 2 ? -1 : 1) * noise;
+    p->displacement.row[1][i] += (turn % 2 ? -1 : 1) * noise;
   }
   double most = 0;
   for (int k = 0; k < 50; ++k) {

@@ -76,7 +76,7 @@ static double stored_of(const breccia_model *m, int32_t place, const double whol
       if (!(f->intact[slot] >> place % SLICE & 1)) continue;
       const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
       double eta[3], z[3];
-      for (int k = 0; k < 3; ++k) eta[k] = p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      for (int k = 0; k < 3; ++k) eta[k] = p->displacement.row[k][bond.neighbour] - p->displacement.row[k][place];
       for (int k = 0; k < 6 && !pass; ++k)
         shape[k] += bond.weight * bond.xi[symmetric_row[k]] * bond.xi[symmetric_column[k]];
       for (int k = 0; k < 9 && !pass; ++k) moment[k] += bond.weight * eta[k / 3] * bond.xi[k % 3];
@@ -141,7 +141,7 @@ static void control_keeps_what_the_law_keeps_and_stores_no_more_than_its_share(v
     uint64_t seed = 5;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->count; ++i)
-        p->displacement[k][p->place_of[i]] +=
+        p->displacement.row[k][p->place_of[i]] +=
             4e-7 * pow(10, 2 * p->position[0][p->place_of[i]] / 0.09) * (random_uniform(&seed) - 0.5);
     compute_forces(m);
     int bounded = 0, unbounded = 0;

@@ -41,7 +41,7 @@ static double force_between_halves(const breccia_model *m)
   double force = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[0][i] < 0.04) force += p->internal[0][i] * p->volume[i];
+    if (p->position[0][i] < 0.04) force += p->internal.row[0][i] * p->volume[i];
   }
   return force;
 }

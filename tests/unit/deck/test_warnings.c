@@ -621,7 +621,7 @@ static double bending(const char *formulation, double poisson, bool *told)
   step_surely(m, 1);
   const double x = 18.5 * dx, height = ROWS * dx;
   const int32_t at = particles_nearest(m->domain.particles, (double[]){x, middle, 0});
-  const double found = -m->domain.particles->displacement[1][at];
+  const double found = -m->domain.particles->displacement.row[1][at];
   breccia_model_destroy(&m);
   return found / (moment * (x * x - 0.05 * 0.05) / 2 / (1e6 / (1 - poisson * poisson) * pow(height, 3) / 12));
 }

@@ -83,12 +83,12 @@ static void stretch_told_is_that_of_the_two_particles(void **state)
             "peridynamics: {formulation: bond-based, space: 1-D, horizon: 1.2}\nfailure: {critical stretch: 2e-3}\n"
             "solve: {explicit: {time step: 1e-4, steps: 3}}\n");
   const Particles *p = m->domain.particles;
-  for (int32_t n = 5; n < 12; ++n) p->displacement[0][p->place_of[n]] = 5e-3;
+  for (int32_t n = 5; n < 12; ++n) p->displacement.row[0][p->place_of[n]] = 5e-3;
   step_surely(m, 1);
   assert_int_equal(m->domain.broken_count, 1);
   const BrokenBond *bond = &m->domain.broken[0];
   assert_true(bond->a == 4 && bond->b == 5 && bond->cause == BREAK_LIMIT);
-  const double *u = p->displacement[0], stretch = u[p->place_of[5]] - u[p->place_of[4]]; /* of a bond 1 m long */
+  const double *u = p->displacement.row[0], stretch = u[p->place_of[5]] - u[p->place_of[4]]; /* of a bond 1 m long */
   assert_near(stretch, 5e-3, 1e-6);
   assert_near(bond->value, stretch, 1e-15);
   assert_near(bond->limit, 2e-3, 1e-15);

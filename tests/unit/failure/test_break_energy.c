@@ -24,7 +24,8 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
     if (fabs(p->position[0][i] - 0.55) < 1e-9) right = i;
   }
   assert_true(middle >= 0 && right >= 0);
-  p->displacement[0][right] += 0.0032; /* stretches the bond between them by 0.022, shorter ones to its right less */
+  p->displacement.row[0][right] +=
+      0.0032; /* stretches the bond between them by 0.022, shorter ones to its right less */
   compute_forces(m);
   StoredEnergy before, after;
   d->regions[0].type->stored_energy(d->regions[0].formulation, middle, 0, &before);
@@ -112,7 +113,7 @@ static void bodies_gain_no_energy_as_they_break(void **state)
       const Energy e = solver_energy(&m->solver);
       const Particles *p = m->domain.particles;
       for (int64_t n = 0; n < p->count; ++n)
-        fastest = larger_of(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
+        fastest = larger_of(fastest, hypot(p->velocity.row[0][p->place_of[n]], p->velocity.row[1][p->place_of[n]]));
       print_message("%s: external %.1f J, stored %.1f J, fracture %.2f J, given back %.4f J, %lld bonds\n", words,
                     e.external, e.stored, e.fracture, given, (long long)m->domain.broken_count);
       assert_true(m->domain.broken_count > 100);
@@ -148,7 +149,7 @@ static void families_that_carry_less_restart_to_the_same_bits(void **state)
   assert_true(least < 0.9);
   assert_memory_equal(second->domain.regions[0].type->shares(second->domain.regions[0].formulation), shares, bytes);
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(second->domain.particles->displacement[k], d->particles->displacement[k], bytes);
+    assert_memory_equal(second->domain.particles->displacement.row[k], d->particles->displacement.row[k], bytes);
   breccia_model_destroy(&whole);
   breccia_model_destroy(&first);
   breccia_model_destroy(&second);
@@ -251,14 +252,14 @@ static Apart fall_apart(breccia_model *m)
   /* Wider by more than the criterion asks for, and not evenly; it grows on, and shears. */
   deform_uniformly(m, (double[]){1.012, 0.003, 0, 0, 1.016, 0, 0, 0, plane ? 1 : 1.014});
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k) {
+    for (int k = 0; k < p->space.rows; ++k) {
       const int32_t i = p->place_of[n];
-      const bool turns = k >= ROTATION;
+      const bool turns = k >= p->space.rotation;
       if (plane && k == 2) continue;
-      p->displacement[k][i] += (turns ? 0.02 : 5e-5) * (2 * random_uniform(&seed) - 1);
-      p->velocity[k][i] = turns ? 500 * p->displacement[k][i]
-                                : (3 + k) * p->position[k][i] + 0.5 * p->position[(k + 1) % 2][i] +
-                                      0.03 * (2 * random_uniform(&seed) - 1);
+      p->displacement.row[k][i] += (turns ? 0.02 : 5e-5) * (2 * random_uniform(&seed) - 1);
+      p->velocity.row[k][i] = turns ? 500 * p->displacement.row[k][i]
+                                    : (3 + k) * p->position[k][i] + 0.5 * p->position[(k + 1) % 2][i] +
+                                          0.03 * (2 * random_uniform(&seed) - 1);
     }
   if (p->orientation[0]) particles_take_rotations(p, 0, p->places);
   Team *team = team_use(m->team);
@@ -266,10 +267,10 @@ static Apart fall_apart(breccia_model *m)
   domain_evaluate(d, NULL);
   Apart apart = {.stored = domain_stored_energy(d)};
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k) {
+    for (int k = 0; k < p->space.rows; ++k) {
       const int32_t i = p->place_of[n];
-      apart.half -= 0.5 * time_step * p->volume[i] * p->internal[k][i] * p->velocity[k][i];
-      p->displacement[k][i] += time_step * p->velocity[k][i];
+      apart.half -= 0.5 * time_step * p->volume[i] * p->internal.row[k][i] * p->velocity.row[k][i];
+      p->displacement.row[k][i] += time_step * p->velocity.row[k][i];
     }
   domain_break(d, &(Moment){.step = 1, .time = time_step, .time_step = time_step, .motion = 1});
   domain_evaluate(d, NULL); /* laws answer to what is left, which settles what families had shared */

@@ -78,7 +78,7 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
       const Particles *p = m->domain.particles;
       double fastest = 0;
       for (int64_t n = 0; n < p->count; ++n)
-        fastest = larger_of(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
+        fastest = larger_of(fastest, hypot(p->velocity.row[0][p->place_of[n]], p->velocity.row[1][p->place_of[n]]));
       assert_true(fastest < 10 * 16.5);
       assert_true(m->domain.broken_count > 500);
       assert_true(e.imbalance < 5e-3);
@@ -123,7 +123,7 @@ static void what_a_load_tears_off_breaks_in_the_same_step(void **state)
         for (int c = 0; c < 3; ++c) {
           const double xi = p->position[c][j] - p->position[c][i];
           before += xi * xi;
-          after += pow(xi + p->displacement[c][j] - p->displacement[c][i], 2);
+          after += pow(xi + p->displacement.row[c][j] - p->displacement.row[c][i], 2);
         }
         expected += sqrt(before) < 0.2016 && sqrt(after / before) > 1.02;
       }
@@ -142,7 +142,7 @@ static void fragments_fly_on_when_no_bond_is_left(void **state)
                           "failure: {critical stretch: 1e-3}\nsolve: {explicit: {end time: 2}}\n");
   const Particles *p = m->domain.particles;
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) p->velocity[k][p->place_of[n]] = p->position[k][p->place_of[n]];
+    for (int k = 0; k < 3; ++k) p->velocity.row[k][p->place_of[n]] = p->position[k][p->place_of[n]];
   breccia_error *error = breccia_error_create();
   if (breccia_model_step(m, 250, error)) fail_msg("%s", breccia_error_text(error));
   assert_int_equal(m->domain.broken_count, m->domain.family.bonds / 2);
@@ -168,7 +168,7 @@ static void a_bond_that_breaks_as_it_swings_never_gives_energy(void **state)
                                 "solve: {explicit: {end time: 1e-4, safety: %g}}\n",
                                 0.5 + 0.008 * n);
     const Particles *p = m->domain.particles;
-    for (int k = 0; k < 2; ++k) p->velocity[0][p->place_of[k]] = k ? -12 : 12;
+    for (int k = 0; k < 2; ++k) p->velocity.row[0][p->place_of[k]] = k ? -12 : 12;
     while (m->solver.clock.step < m->solver.clock.steps) {
       assert_int_equal(breccia_model_step(m, 1, NULL), 0);
       assert_true(m->domain.fracture_energy >= -1e-9 * m->solver.ledger.kinetic_at_start);
@@ -195,8 +195,8 @@ static void the_step_follows_when_many_bonds_break_at_once(void **state)
   uint64_t seed = 5;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    for (int k = 0; k < 3; ++k) p->velocity[k][i] = 1e-3 * (2 * random_uniform(&seed) - 1);
-    p->velocity[0][i] += 0.06 * (p->position[0][i] - 0.4);
+    for (int k = 0; k < 3; ++k) p->velocity.row[k][i] = 1e-3 * (2 * random_uniform(&seed) - 1);
+    p->velocity.row[0][i] += 0.06 * (p->position[0][i] - 0.4);
   }
   breccia_error *error = breccia_error_create();
   double step;

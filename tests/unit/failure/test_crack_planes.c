@@ -226,7 +226,7 @@ static void hybrid_bonds_break_at_the_energy_that_goes_with_them(void **state)
     for (int k = 0; k < 2; ++k)
       for (int64_t i = 0; i < d->particles->count; ++i) {
         const int32_t place = d->particles->place_of[i];
-        d->particles->displacement[k][place] =
+        d->particles->displacement.row[k][place] =
             1e-3 * d->particles->position[k][place] + 5e-5 * (random_uniform(&seed) - 0.5);
       }
     compute_forces(m);

@@ -13,9 +13,9 @@ static double half_energy(const Domain *d, int64_t slice, int64_t slot, int lane
   const Region *own = domain_region(d, slice * SLICE);
   const Bond bond = family_bond(&d->family, slice, slot, lane);
   double t[3], change[3], sum = 0, square = 0;
-  own->type->half_state(own->formulation, d->particles->displacement, NULL, slice, slot, lane, t);
+  own->type->half_state(own->formulation, d->particles->displacement.row, NULL, slice, slot, lane, t);
   for (int k = 0; k < 3; ++k) {
-    const double *u = d->particles->displacement[k];
+    const double *u = d->particles->displacement.row[k];
     change[k] = bond.xi[k] + u[bond.neighbour] - u[slice * SLICE + lane];
     square += change[k] * change[k];
   }
@@ -123,7 +123,7 @@ static void bonds_of_any_influence_break_at_the_same_energy(void **state)
         for (int k = 0; k < 2; ++k)
           for (int64_t i = 0; i < d->particles->count; ++i) {
             const int32_t place = d->particles->place_of[i];
-            d->particles->displacement[k][place] =
+            d->particles->displacement.row[k][place] =
                 (k ? -1e-3 : 4e-3) * d->particles->position[k][place] + 4e-4 * (random_uniform(&seed) - 0.5);
           }
         compute_forces(m);
@@ -140,7 +140,7 @@ static void bonds_of_any_influence_break_at_the_same_energy(void **state)
                 half_energy(d, place / SLICE, slot, lane) + half_energy(d, there, back, bond.neighbour % SLICE);
             double length = 0;
             for (int k = 0; k < 3; ++k) {
-              const double *u = d->particles->displacement[k];
+              const double *u = d->particles->displacement.row[k];
               length += pow(bond.xi[k] + u[bond.neighbour] - u[place], 2);
             }
             if (sqrt(length) <= bond.length) continue;
@@ -185,7 +185,7 @@ static void a_pulled_pair_breaks_at_its_energy_and_a_pressed_one_does_not(void *
     const Particles *p = m->domain.particles;
     while (!m->domain.broken_count && m->solver.clock.step < m->solver.clock.steps) breccia_model_step(m, 1, NULL);
     assert_int_equal(m->domain.broken_count, !pressed);
-    const double stretch = p->displacement[0][p->place_of[1]] / 0.01,
+    const double stretch = p->displacement.row[0][p->place_of[1]] / 0.01,
                  in_a_step = 0.01 * m->solver.clock.time_step / 0.01;
     if (!pressed) assert_true(stretch > 1e-3 && stretch < 1e-3 + 1.01 * in_a_step);
     if (pressed) { /* it holds nearly four times as much */
@@ -356,7 +356,7 @@ static double strip_bears(const char *formulation, const char *law, const char *
     assert_int_equal(breccia_model_step(m, 10, NULL), 0);
     double pull = 0;
     for (int64_t n = 0; n < held->count; ++n)
-      pull += m->domain.particles->internal[0][held->places[n]] * m->domain.particles->volume[held->places[n]];
+      pull += m->domain.particles->internal.row[0][held->places[n]] * m->domain.particles->volume[held->places[n]];
     most = larger_of(most, pull);
     if (m->domain.broken_count > 100 && pull < 0.5 * most) break; /* the largest load is behind */
   }
@@ -400,7 +400,7 @@ static void push_away(Domain *d, int32_t place, double length)
   for (int64_t slot = d->family.first[place / SLICE]; slot < d->family.first[place / SLICE + 1]; ++slot) {
     if (!(d->family.intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(&d->family, place / SLICE, slot, place % SLICE);
-    for (int k = 0; k < 3; ++k) d->particles->displacement[k][bond.neighbour] += length * bond.xi[k] / bond.length;
+    for (int k = 0; k < 3; ++k) d->particles->displacement.row[k][bond.neighbour] += length * bond.xi[k] / bond.length;
   }
 }
 
@@ -448,13 +448,13 @@ static void move_ends(Domain *d, int64_t place, const Bond *bond, double length)
 {
   double y[3], square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double *u = d->particles->displacement[k];
+    const double *u = d->particles->displacement.row[k];
     y[k] = bond->xi[k] + u[bond->neighbour] - u[place];
     square += y[k] * y[k];
   }
   for (int k = 0; k < 3; ++k) {
-    d->particles->displacement[k][place] -= length * y[k] / sqrt(square);
-    d->particles->displacement[k][bond->neighbour] += length * y[k] / sqrt(square);
+    d->particles->displacement.row[k][place] -= length * y[k] / sqrt(square);
+    d->particles->displacement.row[k][bond->neighbour] += length * y[k] / sqrt(square);
   }
 }
 
@@ -476,7 +476,7 @@ static void ends_that_part_by_as_much_as_the_sweep_says_reach_the_limit(void **s
         n < 2 ? "elastic-1d" : "elastic, Poisson ratio: 0.25", keys[n], limit);
     Domain *d = &m->domain;
     for (int64_t i = 0; i < d->particles->places; ++i)
-      d->particles->displacement[0][i] = 1e-3 * d->particles->position[0][i];
+      d->particles->displacement.row[0][i] = 1e-3 * d->particles->position[0][i];
     compute_forces(m);
     d->failure.moved = 0;
     double least = 1, most = 0;
@@ -571,7 +571,7 @@ static void threads_and_restarts_do_not_change_a_bit(void **state)
     assert_int_equal(breccia_model_run(second, &run, NULL), 0);
     assert_int_equal(second->domain.broken_count, whole->domain.broken_count);
     for (int k = 0; k < 3; ++k)
-      assert_memory_equal(second->domain.particles->displacement[k], whole->domain.particles->displacement[k],
+      assert_memory_equal(second->domain.particles->displacement.row[k], whole->domain.particles->displacement.row[k],
                           sizeof(double) * (size_t)whole->domain.particles->places);
     assert_true(second->domain.fracture_energy == whole->domain.fracture_energy);
     breccia_model_destroy(&whole);

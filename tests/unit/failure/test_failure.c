@@ -136,7 +136,7 @@ static void all_materials_have_the_limit_of_the_deck(void **state)
                  "solve: {explicit: {steps: 2, time step: 1e-9}}\n",
                  turned ? "hard" : "soft", turned ? "soft" : "hard");
     const Particles *p = m->domain.particles;
-    for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] = (beyond ? 0.0101 : 0.0099) * p->position[0][i];
+    for (int64_t i = 0; i < p->places; ++i) p->displacement.row[0][i] = (beyond ? 0.0101 : 0.0099) * p->position[0][i];
     assert_int_equal(breccia_model_step(m, 1, NULL), 0);
     int64_t broken[2] = {0};
     for (int64_t k = 0; k < m->domain.broken_count; ++k)
@@ -215,7 +215,7 @@ static void bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time(void **stat
       const Particles *p = m->domain.particles;
       for (int64_t n = 0; n < p->count; ++n)
         for (int c = 0; c < (plane ? 2 : 3); ++c)
-          p->velocity[c][p->place_of[n]] = p->position[c][p->place_of[n]] > 1 ? 1e-3 : -1e-3;
+          p->velocity.row[c][p->place_of[n]] = p->position[c][p->place_of[n]] > 1 ? 1e-3 : -1e-3;
       for (int step = 0; step < 600 && m->domain.broken_count < m->domain.family.bonds / 2; ++step) {
         step_surely(m, 1);
         assert_none_is_beyond(m, keys[k]);
@@ -278,7 +278,7 @@ static double stretch_of(const Particles *p, int32_t a, int32_t b)
 {
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double y = p->position[k][b] - p->position[k][a] + p->displacement[k][b] - p->displacement[k][a];
+    const double y = p->position[k][b] - p->position[k][a] + p->displacement.row[k][b] - p->displacement.row[k][a];
     square += y * y;
   }
   return sqrt(square) / particles_distance(p, a, b) - 1;
@@ -381,7 +381,7 @@ static void bonds_break_in_the_step_in_which_they_pass_their_limit(void **state)
     uint64_t seed = 5;
     for (int64_t n = 0; n < p->count; ++n) /* some stand still, some fly: slices differ in what they have in reserve */
       for (int k = 0; k < of[c].axes; ++k)
-        p->velocity[k][p->place_of[n]] = n % 3 ? 4e-3 * (random_uniform(&seed) - 0.5) : 0;
+        p->velocity.row[k][p->place_of[n]] = n % 3 ? 4e-3 * (random_uniform(&seed) - 0.5) : 0;
     int64_t before = 0;
     for (int step = 0; step < 500 && m->domain.broken_count < m->domain.family.bonds / 4; ++step) {
       step_surely(m, 1);

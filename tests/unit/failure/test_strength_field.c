@@ -172,9 +172,9 @@ static void factors_scale_laws_and_limits(void **state)
     for (int64_t n = 0; n < m->domain.particles->count; ++n)
       for (int c = 0; c < 2; ++c) {
         const int32_t place = m->domain.particles->place_of[n];
-        const double u = m->domain.particles->displacement[c][place];
-        apart = larger_of(apart, fabs(u - other->domain.particles->displacement[c][place]));
-        differs = larger_of(differs, fabs(u - plain->domain.particles->displacement[c][place]));
+        const double u = m->domain.particles->displacement.row[c][place];
+        apart = larger_of(apart, fabs(u - other->domain.particles->displacement.row[c][place]));
+        differs = larger_of(differs, fabs(u - plain->domain.particles->displacement.row[c][place]));
         moved = larger_of(moved, fabs(u));
       }
     print_message("%s, %s%s: apart %.2g, without the factor %.2g of %.2g; %lld bonds broken\n", pairs[k].material,

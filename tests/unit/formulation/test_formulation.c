@@ -1,6 +1,5 @@
 #include "base/random.h"
 #include "base/tensor.h"
-#include "solver/vectors.h"
 #include "support.h"
 
 /* An irregular body: two lattices that do not fit each other, a hole and a cut. */
@@ -33,7 +32,7 @@ static double largest_force(const breccia_model *model)
   const Particles *p = model->domain.particles;
   double largest = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(p->internal[k][p->place_of[n]]));
+    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(p->internal.row[k][p->place_of[n]]));
   return largest;
 }
 
@@ -88,7 +87,7 @@ static void patch_of_uniform_strain_leaves_the_interior_without_force(void **sta
     for (int k = 0; k < 3; ++k) inside &= p->position[k][i] > 6 && p->position[k][i] < (double)(17 - k) - 6;
     if (!inside) continue;
     ++interior;
-    for (int k = 0; k < 3; ++k) assert_near(p->internal[k][i], 0, 1e-12 * scale);
+    for (int k = 0; k < 3; ++k) assert_near(p->internal.row[k][i], 0, 1e-12 * scale);
   }
   assert_true(interior >= 3);
   breccia_model_destroy(&model);
@@ -134,7 +133,7 @@ static void shake(breccia_model *model, double amplitude)
   uint64_t seed = 5;
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < (model->domain.body.dimensions); ++k)
-      p->displacement[k][p->place_of[n]] += amplitude * (random_uniform(&seed) - 0.5);
+      p->displacement.row[k][p->place_of[n]] += amplitude * (random_uniform(&seed) - 0.5);
 }
 
 static void internal_forces_balance(void **state)
@@ -157,8 +156,8 @@ static void internal_forces_balance(void **state)
       int32_t i = p->place_of[n];
       double x[3], f[3];
       for (int k = 0; k < 3; ++k) {
-        x[k] = p->position[k][i] + p->displacement[k][i];
-        f[k] = p->internal[k][i] * p->volume[i];
+        x[k] = p->position[k][i] + p->displacement.row[k][i];
+        f[k] = p->internal.row[k][i] * p->volume[i];
         force[k] += f[k];
         size += fabs(f[k]);
       }
@@ -227,12 +226,13 @@ static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state
                   (whole > 2 * p->slices && ragged > 3)); /* other influences have more kinds of rows */
       compute_forces(model);
       double *by_rows = malloc(3 * sizeof(double) * (size_t)p->places), largest = largest_force(model);
-      for (int k = 0; k < 3; ++k) memcpy(by_rows + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+      for (int k = 0; k < 3; ++k)
+        memcpy(by_rows + k * p->places, p->internal.row[k], sizeof(double) * (size_t)p->places);
       forget_rows(f);
       compute_forces(model);
       for (int k = 0; k < 3; ++k)
         for (int64_t i = 0; i < p->places; ++i)
-          assert_near(by_rows[k * p->places + i], p->internal[k][i], 1e-12 * largest);
+          assert_near(by_rows[k * p->places + i], p->internal.row[k][i], 1e-12 * largest);
       free(by_rows);
       breccia_model_destroy(&model);
     }
@@ -286,7 +286,7 @@ static void bodies_whose_bonds_are_mended_have_the_same_forces_to_the_bit(void *
       shake(model, 0.02);
       compute_forces(model);
       double *before[3];
-      for (int c = 0; c < 3; ++c) before[c] = memcpy(malloc(bytes), p->internal[c], bytes);
+      for (int c = 0; c < 3; ++c) before[c] = memcpy(malloc(bytes), p->internal.row[c], bytes);
       bool *broken = calloc((size_t)(p->count * p->count), 1); /* and not cut */
       for (int deed = 0; deed < 2; ++deed) {
         int64_t changed = 0;
@@ -302,8 +302,9 @@ static void bodies_whose_bonds_are_mended_have_the_same_forces_to_the_bit(void *
           }
         assert_true(changed > 20);
         compute_forces(model);
-        const bool same = !memcmp(before[0], p->internal[0], bytes) && !memcmp(before[1], p->internal[1], bytes) &&
-                          !memcmp(before[2], p->internal[2], bytes);
+        const bool same = !memcmp(before[0], p->internal.row[0], bytes) &&
+                          !memcmp(before[1], p->internal.row[1], bytes) &&
+                          !memcmp(before[2], p->internal.row[2], bytes);
         if (same != (deed == 1)) fail_msg("%s, body %d, %s", kinds[k][0], b, deed ? "mended" : "broken");
       }
       free(broken);
@@ -323,21 +324,21 @@ static void force_is_minus_the_gradient_of_the_energy(void **state)
   double *before[3];
   for (int k = 0; k < 3; ++k) {
     before[k] = malloc(sizeof(double) * (size_t)p->places);
-    memcpy(before[k], p->internal[k], sizeof(double) * (size_t)p->places);
+    memcpy(before[k], p->internal.row[k], sizeof(double) * (size_t)p->places);
   }
   for (int64_t n = 3; n < p->count; n += p->count / 7) {
     int32_t i = p->place_of[n];
     int k = (int)(n % 3);
-    double energy[2], h = 1e-5, u = p->displacement[k][i];
+    double energy[2], h = 1e-5, u = p->displacement.row[k][i];
     for (int side = 0; side < 2; ++side) {
-      p->displacement[k][i] = u + (side ? h : -h);
+      p->displacement.row[k][i] = u + (side ? h : -h);
       compute_forces(model);
       energy[side] = 0;
       for (int64_t j = 0; j < p->places; ++j)
         for (int c = 0; c < 6; ++c)
           energy[side] += 0.5 * p->volume[j] * model->domain.stress[c][j] * model->domain.strain[c][j];
     }
-    p->displacement[k][i] = u;
+    p->displacement.row[k][i] = u;
     assert_near(before[k][i] * p->volume[i], -(energy[1] - energy[0]) / (2 * h), 1e-6 * 150);
   }
   for (int k = 0; k < 3; ++k) free(before[k]);
@@ -359,7 +360,7 @@ static double checkerboard_resistance(const char *control)
   for (int64_t n = 0; n < p->count; ++n) {
     int32_t i = p->place_of[n];
     int parity = (int)(p->position[0][i] + p->position[1][i] + p->position[2][i] + 0.5) % 2;
-    for (int k = 0; k < 3; ++k) p->displacement[k][i] = parity ? a : -a;
+    for (int k = 0; k < 3; ++k) p->displacement.row[k][i] = parity ? a : -a;
   }
   compute_forces(model);
   for (int64_t n = 0; n < p->count; ++n) {
@@ -368,7 +369,7 @@ static double checkerboard_resistance(const char *control)
     for (int k = 0; k < 3; ++k) inside &= p->position[k][i] > 5.5 && p->position[k][i] < 9.5;
     if (!inside) continue;
     ++count;
-    for (int k = 0; k < 3; ++k) square += p->internal[k][i] * p->internal[k][i] / 3;
+    for (int k = 0; k < 3; ++k) square += p->internal.row[k][i] * p->internal.row[k][i] / 3;
   }
   breccia_model_destroy(&model);
   return sqrt(square / count) / (150 * 2 * a / 3.015);
@@ -394,11 +395,12 @@ static void a_chequered_plane_body_is_held_too(void **state)
   (void)state;
   breccia_model *model = plane_body("plane stress", "influence: constant");
   const Particles *p = model->domain.particles;
-  for (int64_t n = 0; n < p->count; ++n) p->displacement[0][p->place_of[n]] = 1e-5 * ((n % 17 + n / 17) % 2 ? 1 : -1);
+  for (int64_t n = 0; n < p->count; ++n)
+    p->displacement.row[0][p->place_of[n]] = 1e-5 * ((n % 17 + n / 17) % 2 ? 1 : -1);
   compute_forces(model);
   const double middle[3] = {0.85, 0.65, 0};
   int32_t i = particles_nearest(p, middle);
-  double resistance = fabs(p->internal[0][i]) / (150 * 2e-5 / (0.1 * 0.3015));
+  double resistance = fabs(p->internal.row[0][i]) / (150 * 2e-5 / (0.1 * 0.3015));
   assert_true(resistance > 0.5 && resistance < 0.8); /* 3.3 to 3.7 G_s at G_s = 0.2 (docs/theory.md 4) */
   breccia_model_destroy(&model);
 }
@@ -446,9 +448,9 @@ static void lone_particles_and_torn_families_give_finite_forces(void **state)
     double sum[3] = {0}, size = 0;
     for (int64_t n = 0; n < p->count; ++n)
       for (int k = 0; k < 3; ++k) {
-        assert_true(isfinite(p->internal[k][p->place_of[n]]));
-        sum[k] += p->internal[k][p->place_of[n]];
-        size += fabs(p->internal[k][p->place_of[n]]);
+        assert_true(isfinite(p->internal.row[k][p->place_of[n]]));
+        sum[k] += p->internal.row[k][p->place_of[n]];
+        size += fabs(p->internal.row[k][p->place_of[n]]);
       }
     for (int k = 0; k < 3; ++k) assert_near(sum[k], 0, 1e-12 * (size + 1));
     int bonds = family_count(&model->domain.family, a);
@@ -515,12 +517,12 @@ static void a_lone_bond_pulls_with_the_micromodulus(void **state)
         if (a || b != 1) family_break(&d->family, p->place_of[a], p->place_of[b]);
     for (int64_t slice = 0; slice < p->slices; ++slice) d->regions[0].type->renew(d->regions[0].formulation, slice);
     assert_int_equal(family_count(&d->family, p->place_of[0]), 1);
-    p->displacement[0][p->place_of[1]] = 0.1 * stretch;
+    p->displacement.row[0][p->place_of[1]] = 0.1 * stretch;
     compute_forces(m);
     const double c = plane ? 9 * 1e4 / (pi * 0.2 * pow(delta, 3)) : 12 * 1e4 / (pi * pow(delta, 4)),
                  volume = 0.01 * (plane ? 0.2 : 0.1), force = c * stretch * volume;
-    assert_near(p->internal[0][p->place_of[0]], force, 1e-9 * force);
-    assert_near(p->internal[0][p->place_of[1]], -force, 1e-9 * force);
+    assert_near(p->internal.row[0][p->place_of[0]], force, 1e-9 * force);
+    assert_near(p->internal.row[0][p->place_of[1]], -force, 1e-9 * force);
     breccia_model_destroy(&m);
   }
 }
@@ -565,13 +567,14 @@ static void a_phase_that_fails_is_heard(void **state)
         d->regions[0].type = whole;
         assert_int_equal(domain_linearise(d, NULL, NULL), 0);
         assert_true(domain_has_forces(d));
-        double *v[MOTIONS], *change[MOTIONS];
-        assert_true(vectors_make(v, d->particles, "test", NULL) && vectors_make(change, d->particles, "test", NULL));
+        Vector v[1] = {{0}}, change[1] = {{0}};
+        assert_true(vector_create(v, &d->particles->space, "test", NULL) &&
+                    vector_create(change, &d->particles->space, "test", NULL));
         d->regions[0].type = &type;
         domain_linear_step(d, v, change);
         assert_false(domain_has_forces(d));
-        vectors_free(v);
-        vectors_free(change);
+        vector_destroy(v);
+        vector_destroy(change);
         team_use(before);
         breccia_error *error = breccia_error_create();
         assert_int_equal(breccia_model_step(m, 1, error), BRECCIA_FAILURE);

@@ -157,7 +157,7 @@ static void laws_that_can_fail_keep_the_mean_of_both_ends(void **state)
     double state_of[3];
     for (int32_t n = 0; n < d->particles->count; ++n) {
       const int32_t i = d->particles->place_of[n];
-      for (int c = 0; c < 2; ++c) d->particles->displacement[c][i] = 1e-9 * d->particles->position[c][i];
+      for (int c = 0; c < 2; ++c) d->particles->displacement.row[c][i] = 1e-9 * d->particles->position[c][i];
     }
     compute_forces(m);
     const int64_t slot = family_slot(&d->family, stiff, soft);
@@ -165,14 +165,14 @@ static void laws_that_can_fail_keep_the_mean_of_both_ends(void **state)
     for (int end = 0; end < 2; ++end) {
       const int32_t own = end ? soft : stiff;
       const int64_t at = end ? family_slot(&d->family, soft, stiff) : slot;
-      region->type->half_state(region->formulation, d->particles->displacement, NULL, own / SLICE, at, own % SLICE,
+      region->type->half_state(region->formulation, d->particles->displacement.row, NULL, own / SLICE, at, own % SLICE,
                                state_of);
       force += fabs(state_of[1]);
     }
     /* Moduli of 1 and 0.1 have the mean of 0.55, and 0.182 in series. */
     const int64_t one = particles_nearest(d->particles, (double[]){4.5, -1.5, 0});
     double inside[3];
-    region->type->half_state(region->formulation, d->particles->displacement, NULL, one / SLICE,
+    region->type->half_state(region->formulation, d->particles->displacement.row, NULL, one / SLICE,
                              family_slot(&d->family, (int32_t)one, stiff), (int)(one % SLICE), inside);
     const double share = force / (2 * fabs(inside[1]));
     if (shifts == of[k].joins || !(of[k].joins ? share < 0.3 : share > 0.35 && share < 0.7))

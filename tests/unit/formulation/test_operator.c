@@ -223,26 +223,26 @@ static void sever_some(breccia_model *model, int32_t poor)
 
 /** Vectors over places. */
 typedef struct Vectors {
-  double *of[MOTIONS];
+  Vector of[1];
 } Vectors;
 
 static Vectors vectors(const Particles *p)
 {
-  Vectors v = {{0}};
-  for (int k = 0; k < p->motions; ++k) v.of[k] = places_array(p->places, "test", NULL);
+  Vectors v;
+  assert_true(vector_create(v.of, &p->space, "test", NULL));
   return v;
 }
 
 static void forget(Vectors *v)
 {
-  for (int k = 0; k < MOTIONS; ++k) places_free(&v->of[k]);
+  vector_destroy(v->of);
 }
 
 static void randomize(const Domain *d, double *const *v, double size, uint64_t seed)
 {
   for (int32_t n = 0; n < d->particles->count; ++n)
-    for (int k = 0; k < d->particles->motions; ++k)
-      if (k < d->body.dimensions || k >= ROTATION)
+    for (int k = 0; k < d->particles->space.rows; ++k)
+      if (k < d->body.dimensions || k >= d->particles->space.rotation)
         v[k][d->particles->place_of[n]] = size * 2 * (random_uniform(&seed) - 0.5);
 }
 
@@ -251,24 +251,25 @@ static void displace(const Domain *d, double strain, uint64_t seed)
 {
   const Particles *p = d->particles;
   const double g[9] = {1, 0.3, -0.2, -0.1, -0.4, 0.3, 0.2, 0.1, 0.6};
-  randomize(d, p->displacement, 0.5 * strain, seed);
+  randomize(d, p->displacement.row, 0.5 * strain, seed);
   for (int32_t n = 0; n < p->count; ++n)
     for (int k = 0; k < d->body.dimensions; ++k)
       for (int j = 0; j < d->body.dimensions; ++j)
-        p->displacement[k][p->place_of[n]] += strain * g[3 * k + j] * p->position[j][p->place_of[n]];
+        p->displacement.row[k][p->place_of[n]] += strain * g[3 * k + j] * p->position[j][p->place_of[n]];
   particles_take_rotations(d->particles, 0, p->places);
 }
 
 static void move(const Domain *d, const Vectors *v, double factor)
 {
-  for (int k = 0; k < d->particles->motions; ++k)
-    for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[k][i] += factor * v->of[k][i];
+  for (int k = 0; k < d->particles->space.rows; ++k)
+    for (int64_t i = 0; i < d->particles->places; ++i)
+      d->particles->displacement.row[k][i] += factor * v->of->row[k][i];
 }
 
 static double largest(const Particles *p, double *const *v)
 {
   double most = 0;
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = 0; i < p->places; ++i) most = larger_of(most, fabs(v[k][i]));
   return most;
 }
@@ -277,7 +278,7 @@ static void assert_alike(const Particles *p, double *const *a, double *const *b,
 {
   const double most = largest(p, a);
   if (!(most > 0)) fail_msg("%s: nothing but 0", what);
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       if (!(fabs(a[k][i] - b[k][i]) <= part * most))
         fail_msg("%s: %g and %g at place %lld of [%g, %g, %g], of %g at most", what, a[k][i], b[k][i], (long long)i,
@@ -301,8 +302,8 @@ static Vectors forces(const Domain *d)
 {
   const Particles *p = d->particles;
   Vectors f = vectors(p);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) f.of[k][i] = p->internal[k][i] * p->volume[i];
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t i = 0; i < p->places; ++i) f.of->row[k][i] = p->internal.row[k][i] * p->volume[i];
   return f;
 }
 
@@ -313,11 +314,11 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
   Operator point = {0};
   for (const Region *region = d->regions; region < d->regions + d->region_count; ++region)
     for (int64_t n = 0; n < region->type->point_count(region->formulation); ++n) {
-      assert_int_equal(region->type->point(region->formulation, d->particles->displacement, n, &point, NULL), 0);
-      operator_add_forces(&point, p->displacement, sum.of);
+      assert_int_equal(region->type->point(region->formulation, d->particles->displacement.row, n, &point, NULL), 0);
+      operator_add_forces(&point, p->displacement.row, sum.of->row);
     }
   operator_destroy(&point);
-  assert_alike(p, f->of, sum.of, 1e-11, name);
+  assert_alike(p, f->of->row, sum.of->row, 1e-11, name);
   for (int64_t slice = 0; slice < p->slices; ++slice)
     for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
       for (int lane = 0; lane < SLICE; ++lane) {
@@ -326,11 +327,11 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
         const double volume = p->volume[family_bond(&d->family, slice, slot, lane).neighbour];
         domain_bond_force(d, slice, slot, lane, force);
         for (int k = 0; k < 3; ++k)
-          halves.of[k][slice * SLICE + lane] += force[k] * volume * p->volume[slice * SLICE + lane];
+          halves.of->row[k][slice * SLICE + lane] += force[k] * volume * p->volume[slice * SLICE + lane];
       }
-  for (int k = ROTATION; k < p->motions; ++k) /* half states have no moments */
-    memcpy(halves.of[k], f->of[k], sizeof(double) * (size_t)p->places);
-  assert_alike(p, f->of, halves.of, 1e-11, name);
+  for (int k = p->space.rotation; k < p->space.rows; ++k) /* half states have no moments */
+    memcpy(halves.of->row[k], f->of->row[k], sizeof(double) * (size_t)p->places);
+  assert_alike(p, f->of->row, halves.of->row, 1e-11, name);
   forget(&sum);
   forget(&halves);
 }
@@ -339,7 +340,7 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
  * places alone. */
 static void check_block(const Operator *point, double *const u[3], const double *stiffness, uint64_t *seed)
 {
-  double alone[MOTIONS * MOTIONS], most = 0;
+  double alone[MAX_ROWS * MAX_ROWS], most = 0;
   const int a = (int)(random_uniform(seed) * point->count), b = (int)(random_uniform(seed) * point->count),
             size = point->motions * point->motions;
   const double *block = stiffness + (int64_t)size * (point->count * a + b);
@@ -359,22 +360,23 @@ static Vectors assembled(const Domain *d, const Vectors *v)
   uint64_t seed = 17;
   for (const Region *region = d->regions; region < d->regions + d->region_count; ++region)
     for (int64_t n = 0; n < region->type->point_count(region->formulation); ++n) {
-      assert_int_equal(region->type->point(region->formulation, d->particles->displacement, n, &point, NULL), 0);
+      assert_int_equal(region->type->point(region->formulation, d->particles->displacement.row, n, &point, NULL), 0);
       const int size = point.motions * point.motions;
       if (!point.count) continue;
       if (point.count > room) {
         room = 2 * point.count;
         free(stiffness);
-        stiffness = calloc((size_t)room * (size_t)room * MOTIONS * MOTIONS, sizeof *stiffness);
+        stiffness = calloc((size_t)room * (size_t)room * MAX_ROWS * MAX_ROWS, sizeof *stiffness);
         assert_non_null(stiffness);
       }
-      assert_int_equal(operator_matrix(&point, p->displacement, stiffness, NULL), 0);
-      check_block(&point, p->displacement, stiffness, &seed);
+      assert_int_equal(operator_matrix(&point, p->displacement.row, stiffness, NULL), 0);
+      check_block(&point, p->displacement.row, stiffness, &seed);
       const double *k = stiffness;
       for (int a = 0; a < point.count; ++a)
         for (int b = 0; b < point.count; ++b, k += size)
           for (int c = 0; c < size; ++c)
-            sum.of[c / point.motions][point.places[a].place] += k[c] * v->of[c % point.motions][point.places[b].place];
+            sum.of->row[c / point.motions][point.places[a].place] +=
+                k[c] * v->of->row[c % point.motions][point.places[b].place];
     }
   operator_destroy(&point);
   free(stiffness);
@@ -397,8 +399,8 @@ static void check_strains(Domain *d, const Vectors *v, double h)
     double change[6];
     const Region *region = domain_region(d, i);
     if (!points_on_particles(&region->points)) continue;
-    assert_int_equal(region->type->point(region->formulation, p->displacement, i, &point, NULL), 0);
-    operator_strain(&point, p->displacement, v->of, change);
+    assert_int_equal(region->type->point(region->formulation, p->displacement.row, i, &point, NULL), 0);
+    operator_strain(&point, p->displacement.row, v->of->row, change);
     for (int k = 0; k < 6 && point.components; ++k)
       if (k != ZZ || !region->points.plane_stress)
         assert_near(change[k], (strain[1][6 * i + k] - strain[0][6 * i + k]) / (2 * h), 1e-8);
@@ -424,12 +426,12 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
   check_forces(d, &f, name);
 
   Vectors v = vectors(p), step = vectors(p), found = vectors(p);
-  randomize(d, v.of, 1, 8);
+  randomize(d, v.of->row, 1, 8);
   Vectors sum = assembled(d, &v);
   domain_linear_step(d, v.of, step.of);
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) step.of[k][i] *= p->volume[i];
-  assert_alike(p, sum.of, step.of, 1e-11, name);
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t i = 0; i < p->places; ++i) step.of->row[k][i] *= p->volume[i];
+  assert_alike(p, sum.of->row, step.of->row, 1e-11, name);
 
   const double h = 1e-5 * law->strain;
   double energies[2], work = 0, size = 0;
@@ -437,15 +439,15 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
     move(d, &v, side ? 2 * h : -h);
     domain_evaluate(d, NULL);
     energies[side] = energy(d);
-    for (int k = 0; k < p->motions; ++k)
+    for (int k = 0; k < p->space.rows; ++k)
       for (int64_t i = 0; i < p->places; ++i)
-        found.of[k][i] += (side ? 1 : -1) * p->internal[k][i] * p->volume[i] / (2 * h);
+        found.of->row[k][i] += (side ? 1 : -1) * p->internal.row[k][i] * p->volume[i] / (2 * h);
   }
-  assert_alike(p, step.of, found.of, law->slack, name);
-  for (int k = 0; k < p->motions; ++k)
+  assert_alike(p, step.of->row, found.of->row, law->slack, name);
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      work += f.of[k][i] * v.of[k][i];
-      size += fabs(f.of[k][i] * v.of[k][i]);
+      work += f.of->row[k][i] * v.of->row[k][i];
+      size += fabs(f.of->row[k][i] * v.of->row[k][i]);
     }
   if (law->elastic && !strstr(name, "pairwise")) assert_near(work, -(energies[1] - energies[0]) / (2 * h), 1e-6 * size);
   move(d, &v, -h);

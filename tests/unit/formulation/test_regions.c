@@ -40,9 +40,9 @@ static void a_patch_pulls_at_the_joint_only_and_not_in_all(void **state)
     compute_forces(model);
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      const double x = p->position[0][i] - 20, y = p->position[1][i], force = p->internal[0][i];
+      const double x = p->position[0][i] - 20, y = p->position[1][i], force = p->internal.row[0][i];
       if (fabs(x) > 10 || fabs(y - 15) > 2) continue; /* beside the surfaces of the bar */
-      assert_near(p->internal[1][i], 0, 1e-8 * stress);
+      assert_near(p->internal.row[1][i], 0, 1e-8 * stress);
       if (fabs(x) > horizon)
         assert_near(force, 0, 1e-8 * stress);
       else
@@ -61,13 +61,13 @@ static void assert_momentum_is_kept(breccia_model *model)
   const Particles *p = model->domain.particles;
   uint64_t seed = 5;
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 2; ++k) p->displacement[k][p->place_of[n]] = 0.1 * (random_uniform(&seed) - 0.5);
+    for (int k = 0; k < 2; ++k) p->displacement.row[k][p->place_of[n]] = 0.1 * (random_uniform(&seed) - 0.5);
   compute_forces(model);
   double sum[2] = {0}, size = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     for (int k = 0; k < 2; ++k) {
-      const double force = p->internal[k][i] * p->volume[i];
+      const double force = p->internal.row[k][i] * p->volume[i];
       sum[k] += force;
       size += fabs(force);
     }
@@ -109,9 +109,9 @@ typedef struct Strip {
 static void strip_forces(const Strip *s, const double *u, double *force)
 {
   const Particles *p = s->model->domain.particles;
-  for (int32_t n = 0; n < p->count; ++n) p->displacement[0][p->place_of[n]] = u[s->column[p->place_of[n]]];
+  for (int32_t n = 0; n < p->count; ++n) p->displacement.row[0][p->place_of[n]] = u[s->column[p->place_of[n]]];
   compute_forces(s->model);
-  for (int x = 0; x < COLUMNS; ++x) force[x] = p->internal[0][s->middle[x]];
+  for (int x = 0; x < COLUMNS; ++x) force[x] = p->internal.row[0][s->middle[x]];
 }
 
 /** Speed of a plane wave in a half, from the forces of a cosine. */
@@ -214,7 +214,8 @@ static void one_region_is_the_body_without(void **state)
   }
   assert_true(model[0]->domain.broken_count > 0);
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(model[0]->domain.particles->displacement[k], model[1]->domain.particles->displacement[k],
+    assert_memory_equal(model[0]->domain.particles->displacement.row[k],
+                        model[1]->domain.particles->displacement.row[k],
                         sizeof(double) * (size_t)model[0]->domain.particles->places);
   for (int k = 0; k < 2; ++k) breccia_model_destroy(&model[k]);
 }
@@ -227,8 +228,8 @@ static void a_free_bar_keeps_its_energy(void **state)
   const Particles *p = model->domain.particles;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->velocity[0][i] = 0.05 * (p->position[0][i] - 10) / 10;
-    p->velocity[1][i] = 0.05 * sin(0.3 * p->position[0][i]);
+    p->velocity.row[0][i] = 0.05 * (p->position[0][i] - 10) / 10;
+    p->velocity.row[1][i] = 0.05 * sin(0.3 * p->position[0][i]);
   }
   assert_int_equal(breccia_model_step(model, 1, NULL), 0);
   const Energy first = solver_energy(&model->solver);
@@ -283,7 +284,7 @@ static void joints_break_and_keep_their_books(void **state)
     assert_true(e.imbalance < 1e-3);
     const size_t bytes = sizeof(double) * (size_t)d->particles->places;
     found[turn] = malloc(bytes);
-    memcpy(found[turn], d->particles->displacement[0], bytes);
+    memcpy(found[turn], d->particles->displacement.row[0], bytes);
     if (turn % 2) assert_memory_equal(found[turn - 1], found[turn], bytes);
     breccia_model_destroy(&model);
   }
@@ -367,7 +368,7 @@ static double stretched(const char *left, const char *right, const char *space)
   for (int32_t n = 0; n < p->count; ++n) most = larger_of(most, p->position[0][p->place_of[n]]);
   for (int32_t n = 0; n < p->count; ++n)
     if (p->position[0][p->place_of[n]] > most - 0.1)
-      force += p->internal[0][p->place_of[n]] * p->volume[p->place_of[n]];
+      force += p->internal.row[0][p->place_of[n]] * p->volume[p->place_of[n]];
   breccia_model_destroy(&model);
   return -force;
 }
@@ -415,9 +416,9 @@ static void links_of_a_joint_store_what_others_do(void **state)
     StoredEnergy joint = {0}, inner = {0};
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      p->displacement[0][i] = shear * p->position[1][i];
-      p->displacement[1][i] = 0.5 * shear * p->position[1][i];
-      if (particles_turn(p, i)) p->displacement[p->motions - 1][i] = -shear / 2;
+      p->displacement.row[0][i] = shear * p->position[1][i];
+      p->displacement.row[1][i] = 0.5 * shear * p->position[1][i];
+      if (particles_turn(p, i)) p->displacement.row[p->space.rows - 1][i] = -shear / 2;
     }
     compute_forces(model);
     for (int32_t n = 0; n < p->count; ++n) {
@@ -430,20 +431,22 @@ static void links_of_a_joint_store_what_others_do(void **state)
     assert_near(joint.stored / inner.stored, 1, 1e-5);
     uint64_t seed = 3;
     for (int32_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < p->motions; ++k)
-        if ((k < model->domain.body.dimensions || k >= ROTATION) && (k < ROTATION || particles_turn(p, p->place_of[n])))
-          p->displacement[k][p->place_of[n]] = 0.05 * (random_uniform(&seed) - 0.5);
+      for (int k = 0; k < p->space.rows; ++k)
+        if ((k < model->domain.body.dimensions || k >= p->space.rotation) &&
+            (k < p->space.rotation || particles_turn(p, p->place_of[n])))
+          p->displacement.row[k][p->place_of[n]] = 0.05 * (random_uniform(&seed) - 0.5);
     compute_forces(model);
     double sum[6] = {0}, size = 0;
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       for (int k = 0; k < 3; ++k) {
         const int x = (k + 1) % 3, y = (k + 2) % 3;
-        sum[k] += p->volume[i] * p->internal[k][i];
-        sum[3 + k] += p->volume[i] * ((p->position[x][i] + p->displacement[x][i]) * p->internal[y][i] -
-                                      (p->position[y][i] + p->displacement[y][i]) * p->internal[x][i]);
-        if (space || k == 2) sum[3 + k] += p->volume[i] * p->internal[space ? ROTATION + k : ROTATION][i];
-        size += fabs(p->volume[i] * p->internal[k][i]);
+        sum[k] += p->volume[i] * p->internal.row[k][i];
+        sum[3 + k] += p->volume[i] * ((p->position[x][i] + p->displacement.row[x][i]) * p->internal.row[y][i] -
+                                      (p->position[y][i] + p->displacement.row[y][i]) * p->internal.row[x][i]);
+        if (space || k == 2)
+          sum[3 + k] += p->volume[i] * p->internal.row[space ? p->space.rotation + k : p->space.rotation][i];
+        size += fabs(p->volume[i] * p->internal.row[k][i]);
       }
     }
     for (int k = 0; k < 3; ++k) assert_near(sum[k] / size, 0, 1e-13);

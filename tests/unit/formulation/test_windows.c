@@ -30,16 +30,16 @@ static void windows_lead_to_the_same_bits(void **state)
     whole->domain.regions[0].window.threads = 0;
     step_surely(whole, steps);
     const Particles *q = whole->domain.particles;
-    assert_true(fabs(q->internal[2][q->place_of[q->count - 300]]) > 1e-9);
+    assert_true(fabs(q->internal.row[2][q->place_of[q->count - 300]]) > 1e-9);
     for (int threads = k && !whole_walks() ? 3 : 1; threads <= 3; ++threads) {
       if (under_sanitizers() && threads != 3) continue;
       breccia_model *some = plate_on(threads, cases[k].law, cases[k].peridynamics, "");
       const Particles *p = some->domain.particles;
       assert_in_range(some->domain.regions[0].window.threads, 3, 1000);
       step_surely(some, steps);
-      assert_same_numbers(p->displacement, q->displacement, 3, p->places, cases[k].peridynamics);
-      assert_same_numbers(p->velocity, q->velocity, 3, p->places, cases[k].peridynamics);
-      assert_same_numbers(p->internal, q->internal, 3, p->places, cases[k].peridynamics);
+      assert_same_numbers(p->displacement.row, q->displacement.row, 3, p->places, cases[k].peridynamics);
+      assert_same_numbers(p->velocity.row, q->velocity.row, 3, p->places, cases[k].peridynamics);
+      assert_same_numbers(p->internal.row, q->internal.row, 3, p->places, cases[k].peridynamics);
       breccia_model_destroy(&some);
     }
     breccia_model_destroy(&whole);
@@ -77,8 +77,8 @@ static void others_work_without(void **state)
   w->threads = 1;
   step_surely(m, 3);
   step_surely(other, 3);
-  assert_same_numbers(m->domain.particles->velocity, other->domain.particles->velocity, 3, m->domain.particles->places,
-                      "velocity");
+  assert_same_numbers(m->domain.particles->velocity.row, other->domain.particles->velocity.row, 3,
+                      m->domain.particles->places, "velocity");
   breccia_model_destroy(&other);
   breccia_model_destroy(&m);
   m = plate_on(1, "elastic", "strain: small", "failure: {critical stretch: 0.5}\n");

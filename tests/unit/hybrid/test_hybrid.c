@@ -67,7 +67,8 @@ static void uniform_tension_leaves_free_surfaces_in_peace(void **state)
         const double x = p->position[0][i] - p->position[0][p->place_of[0]];
         if (x < 0.65 || x > 2.3 - 0.65) continue;
         ++inside;
-        for (int c = 0; c < 2; ++c) assert_near(p->internal[c][i] * p->volume[i], 0, 1e-5 * scale); /* finite strain */
+        for (int c = 0; c < 2; ++c)
+          assert_near(p->internal.row[c][i] * p->volume[i], 0, 1e-5 * scale); /* finite strain */
         domain_look(&m->domain, i, unused, stress);
         assert_near(stress[0], young * strain, 1e-5 * young * strain);
         assert_near(stress[1], 0, 1e-5 * young * strain);
@@ -138,13 +139,13 @@ static void blocks_that_run_in_different_directions_strain_alike(void **state)
     const Hybrid *h = formulation_of(m);
     for (int64_t i = 0; i < p->places; ++i)
       for (int k = 0; k < 3; ++k)
-        p->displacement[k][i] = f[3 * k] * p->position[0][i] + f[3 * k + 1] * p->position[1][i];
+        p->displacement.row[k][i] = f[3 * k] * p->position[0][i] + f[3 * k + 1] * p->position[1][i];
     for (int64_t row = 0; row < h->bonds->count; ++row) {
       HybridView view;
       double g[9];
       hybrid_view(h, row, &view);
       if (view.idle) continue;
-      hybrid_gradient(&view, p->displacement, g);
+      hybrid_gradient(&view, p->displacement.row, g);
       for (int k = 0; k < 9; ++k) assert_near(g[k], f[k], 1e-13);
     }
     breccia_model_destroy(&m);
@@ -159,7 +160,7 @@ static void a_turned_body_carries_nothing(void **state)
   deform_uniformly(m, (double[9]){0, -1, 0, 1, 0, 0, 0, 0, 1});
   compute_forces(m);
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) assert_near(p->internal[k][p->place_of[n]], 0, 1e-8 * 1e4);
+    for (int k = 0; k < 3; ++k) assert_near(p->internal.row[k][p->place_of[n]], 0, 1e-8 * 1e4);
   breccia_model_destroy(&m);
 }
 
@@ -198,10 +199,10 @@ static void resist_waves(const char *form, double own, double horizon, Resistanc
         for (int32_t n = 0; n < p->count; ++n) {
           const int32_t i = p->place_of[n];
           const double wave = cos(pi / WAVES * (a * (p->position[0][i] - centre) + b * (p->position[1][i] - centre)));
-          for (int c = 0; c < 3; ++c) p->displacement[c][i] = c == way ? wave : 0;
+          for (int c = 0; c < 3; ++c) p->displacement.row[c][i] = c == way ? wave : 0;
         }
         compute_forces(m);
-        for (int c = 0; c < 2; ++c) of[a][b][c][way] = -p->internal[c][middle];
+        for (int c = 0; c < 2; ++c) of[a][b][c][way] = -p->internal.row[c][middle];
       }
   breccia_model_destroy(&m);
 }
@@ -261,11 +262,11 @@ static void parted_halves_are_strangers(void **state)
   for (int64_t slice = 0; slice < p->slices; ++slice) hybrid_renew(d->regions[0].formulation, slice);
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[0][i] > 1.2) p->displacement[0][i] = 0.02;
+    if (p->position[0][i] > 1.2) p->displacement.row[0][i] = 0.02;
   }
   compute_forces(m);
   for (int32_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 2; ++k) assert_near(p->internal[k][p->place_of[n]], 0, 1e-9 * 1e4);
+    for (int k = 0; k < 2; ++k) assert_near(p->internal.row[k][p->place_of[n]], 0, 1e-9 * 1e4);
   breccia_model_destroy(&m);
 }
 
@@ -401,8 +402,8 @@ static void fibres_are_bond_based(void **state)
   bool any = false;
   for (int64_t i = 0; i < a->places; ++i)
     for (int k = 0; k < 2; ++k) {
-      any |= a->internal[k][i] != 0;
-      assert_true(a->internal[k][i] == b->internal[k][i]);
+      any |= a->internal.row[k][i] != 0;
+      assert_true(a->internal.row[k][i] == b->internal.row[k][i]);
     }
   assert_true(any);
   breccia_model_destroy(&m[0]);
@@ -509,8 +510,8 @@ static void laws_of_hooke_need_no_rows(void **state)
     const Particles *p = both[0]->domain.particles, *q = both[1]->domain.particles;
     const int64_t places = p->places;
     assert_int_equal(both[0]->domain.broken_count, both[1]->domain.broken_count);
-    assert_alike(p->displacement, q->displacement, places);
-    assert_alike(p->internal, q->internal, places);
+    assert_alike(p->displacement.row, q->displacement.row, places);
+    assert_alike(p->internal.row, q->internal.row, places);
     const Energy of = solver_energy(&both[0]->solver), other = solver_energy(&both[1]->solver);
     assert_near(of.stored, other.stored, 1e-10 * other.stored);
     assert_near(of.fracture, other.fracture, 1e-10 * other.fracture);
@@ -522,19 +523,16 @@ static void laws_of_hooke_need_no_rows(void **state)
         assert_near(stress[0][k], stress[1][k], 1e-7); /* of some 1e3 */
       }
     }
-    double *v[3], *change[2][3];
-    for (int k = 0; k < 3; ++k) {
-      v[k] = places_array(places, "v", NULL);
+    Vector v = {0}, change[2] = {{0}};
+    assert_true(vector_create(&v, &p->space, "v", NULL));
+    for (int n = 0; n < 2; ++n) assert_true(vector_create(&change[n], &both[n]->domain.particles->space, "K v", NULL));
+    for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < places; ++i)
-        v[k][i] = sin(0.7 * (double)i + k) * (p->number[i] >= 0 && (cases[c].layers || k < 2));
-      for (int n = 0; n < 2; ++n) change[n][k] = places_array(places, "K v", NULL);
-    }
-    for (int n = 0; n < 2; ++n) domain_linear_step(&both[n]->domain, v, change[n]);
-    assert_alike(change[0], change[1], places);
-    for (int k = 0; k < 3; ++k) {
-      places_free(&v[k]);
-      for (int n = 0; n < 2; ++n) places_free(&change[n][k]);
-    }
+        v.row[k][i] = sin(0.7 * (double)i + k) * (p->number[i] >= 0 && (cases[c].layers || k < 2));
+    for (int n = 0; n < 2; ++n) domain_linear_step(&both[n]->domain, &v, &change[n]);
+    assert_alike(change[0].row, change[1].row, places);
+    vector_destroy(&v);
+    for (int n = 0; n < 2; ++n) vector_destroy(&change[n]);
     for (int n = 0; n < 2; ++n) breccia_model_destroy(&both[n]);
   }
 }
@@ -557,7 +555,7 @@ static void stresses_are_foreseen_by_the_law(void **state)
     Points *points = &d->regions[0].points;
     const Hybrid *h = formulation_of(m);
     step_surely(m, 60);
-    for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[0][i] *= 1.2;
+    for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement.row[0][i] *= 1.2;
     domain_evaluate(d, NULL);
     int64_t asked = 0;
     for (int64_t row = 0; row < points->count; ++row) {

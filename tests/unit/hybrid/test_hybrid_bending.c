@@ -18,14 +18,14 @@ static double energy_of(int columns, int rows, double horizon)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     const double x = p->position[0][i], y = p->position[1][i] - (rows - 1) / 2.0;
-    p->displacement[0][i] = -curvature * x * y;
-    p->displacement[1][i] = curvature * (x * x + 0.2 * y * y) / 2;
+    p->displacement.row[0][i] = -curvature * x * y;
+    p->displacement.row[1][i] = curvature * (x * x + 0.2 * y * y) / 2;
   }
   compute_forces(m);
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 2; ++k) {
       const int32_t i = p->place_of[n];
-      energy -= 0.5 * p->internal[k][i] * p->volume[i] * p->displacement[k][i];
+      energy -= 0.5 * p->internal.row[k][i] * p->volume[i] * p->displacement.row[k][i];
     }
   breccia_model_destroy(&m);
   return energy / (curvature * curvature);

@@ -218,10 +218,10 @@ static void a_notch_beside_a_face_has_an_image(void **state)
         if (body_outside(&m[1]->domain.body, n)) continue;
         const double x[3] = {p->position[0][i], p->position[1][i], 0}, y[3] = {-x[0], x[1], 0};
         const int32_t other = particles_nearest(whole, x), mirrored = particles_nearest(whole, y);
-        middle = (whole->displacement[0][other] + whole->displacement[0][mirrored]) /
+        middle = (whole->displacement.row[0][other] + whole->displacement.row[0][mirrored]) /
                  2; /* the whole one is not held along x */
-        most = larger_of(most, fabs(p->displacement[0][i] - (whole->displacement[0][other] - middle)));
-        most = larger_of(most, fabs(p->displacement[1][i] - whole->displacement[1][other]));
+        most = larger_of(most, fabs(p->displacement.row[0][i] - (whole->displacement.row[0][other] - middle)));
+        most = larger_of(most, fabs(p->displacement.row[1][i] - whole->displacement.row[1][other]));
       }
       print_message("horizon %s, %.9s: apart by %.2g\n", longer ? "2.015" : "1.5", laws[k] + 7, most);
       assert_true(most < 1e-9);

@@ -16,14 +16,14 @@ static double growth_of(const char *body, const char *keys, int steps)
   double first = INFINITY, largest = 0;
   for (int64_t i = 0; i < p->places; ++i)
     for (int k = 0; k < 3; ++k)
-      p->velocity[k][i] = p->number[i] >= 0 && k < m->domain.body.dimensions ? sin(0.9 * (double)i * (k + 1)) : 0;
+      p->velocity.row[k][i] = p->number[i] >= 0 && k < m->domain.body.dimensions ? sin(0.9 * (double)i * (k + 1)) : 0;
   for (int n = 0; n < steps && largest <= 1e7 * first; ++n) {
     compute_forces(m);
     for (int64_t i = 0; i < p->places; ++i)
       for (int k = 0; k < m->domain.body.dimensions && p->number[i] >= 0; ++k) {
-        p->velocity[k][i] += step * p->internal[k][i] / p->density[i];
-        p->displacement[k][i] += step * p->velocity[k][i];
-        largest = larger_of(largest, fabs(p->velocity[k][i]));
+        p->velocity.row[k][i] += step * p->internal.row[k][i] / p->density[i];
+        p->displacement.row[k][i] += step * p->velocity.row[k][i];
+        largest = larger_of(largest, fabs(p->velocity.row[k][i]));
       }
     if (n == 100) first = largest;
   }

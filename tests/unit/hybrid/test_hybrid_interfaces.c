@@ -128,8 +128,8 @@ static void displace(const Layers *of, breccia_model *m)
     place_in_layers(of, m, i, &x, &y);
     strain_across(of, y > 0, &stretch, &slide);
     const double u = scale * (of->along * x + slide * y), v = scale * stretch * y;
-    p->displacement[0][i] = c * u - (solid ? 0 : s * v);
-    p->displacement[solid ? 2 : 1][i] = s * u + (solid ? 1 : c) * v;
+    p->displacement.row[0][i] = c * u - (solid ? 0 : s * v);
+    p->displacement.row[solid ? 2 : 1][i] = s * u + (solid ? 1 : c) * v;
   }
 }
 
@@ -149,7 +149,7 @@ static double largest_force(const Layers *of, breccia_model *m)
       continue;
     if (solid && (p->position[1][i] < margin || p->position[1][i] > 11 - margin)) continue;
     if (isnan(largest)) largest = 0;
-    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(p->internal[k][i]) / stress);
+    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(p->internal.row[k][i]) / stress);
   }
   return largest;
 }

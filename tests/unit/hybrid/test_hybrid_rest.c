@@ -30,8 +30,8 @@ static void relaxation_finds_the_rest_that_newton_finds(void **state)
         const Particles *a = m[0]->domain.particles, *b = m[1]->domain.particles;
         double most = 0, apart = 0;
         for (int64_t i = 0; i < a->places; ++i) {
-          most = larger_of(most, fabs(a->displacement[1][i]));
-          apart = larger_of(apart, fabs(a->displacement[1][i] - b->displacement[1][i]));
+          most = larger_of(most, fabs(a->displacement.row[1][i]));
+          apart = larger_of(apart, fabs(a->displacement.row[1][i] - b->displacement.row[1][i]));
         }
         assert_true(most > 5e-3); /* 1.2 (2^3 / 3) / (E 0.6^3 / 12) = 0.018 is 1.8e-2 */
         assert_true(apart < 1e-5 * most);

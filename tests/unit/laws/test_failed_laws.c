@@ -28,7 +28,7 @@ static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **stat
       assert_int_equal(status, 0);
       assert_true(breccia_model_broken_bonds(model) > 100);
       for (int64_t i = 0; i < model->domain.particles->places; ++i)
-        for (int k = 0; k < 3; ++k) assert_true(isfinite(model->domain.particles->displacement[k][i]));
+        for (int k = 0; k < 3; ++k) assert_true(isfinite(model->domain.particles->displacement.row[k][i]));
       assert_true(model->domain.gave_up != NULL);
     } else {
       assert_int_equal(status, BRECCIA_FAILURE);
@@ -82,7 +82,7 @@ static void a_law_that_gives_up_at_rest_is_named_with_its_particle(void **state)
   double most = 0, end = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    end = fmax(end, p->displacement[0][i]);
+    end = fmax(end, p->displacement.row[0][i]);
     if (p->position[0][i] > 0.6 && p->position[0][i] < 0.9) most = fmax(most, d->strain[0][i]);
   }
   assert_true(most <= 1e-3 && most > 0.98e-3);
@@ -194,7 +194,7 @@ static void a_bond_whose_law_gives_up_takes_both_its_particles_along(void **stat
             "deck", &options, &m, error))
       fail_msg("%s", breccia_error_text(error));
     const Particles *p = m->domain.particles;
-    for (int32_t n = gap + 1; n < COUNT; ++n) p->displacement[0][p->place_of[n]] = 5e-3;
+    for (int32_t n = gap + 1; n < COUNT; ++n) p->displacement.row[0][p->place_of[n]] = 5e-3;
     step_surely(m, 2);
     assert_near(solver_energy(&m->solver).fracture, 0, 1e-4); /* what gives up carries nothing: 0.125 was stored */
     for (int64_t n = 0; n < m->domain.broken_count; ++n) {

@@ -25,10 +25,10 @@ static void displace(const Domain *d, double far)
   const Particles *p = d->particles;
   uint64_t seed = 5;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k)
+    for (int k = 0; k < p->space.rows; ++k)
       if (p->position[2][p->place_of[p->count - 1]] > 0 || k != 2) /* a plane stays one */
-        p->displacement[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
-  p->displacement[0][p->place_of[p->count / 3]] += far;
+        p->displacement.row[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
+  p->displacement.row[0][p->place_of[p->count / 3]] += far;
 }
 
 /** Some bonds, so that some slices have gaps and others none. */
@@ -50,7 +50,7 @@ static double *forces_by(const char *lanes, const char *peridynamics, const char
   setenv("BRECCIA_LANES", lanes, 1);
   breccia_model *model = body(peridynamics, law, shape);
   const Particles *p = model->domain.particles;
-  *count = p->motions * p->places;
+  *count = p->space.rows * p->places;
   double *forces = malloc(sizeof(double) * (size_t)*count);
   displace(&model->domain, far);
   if (far > 0) break_some(&model->domain);
@@ -60,8 +60,8 @@ static double *forces_by(const char *lanes, const char *peridynamics, const char
   compute_forces(model);
   if (trap_is_possible()) trap_end();
   if (trap_tell(&trap, &words)) fail_msg("%s, %s lanes: %s", peridynamics, lanes, text_words(&words));
-  for (int k = 0; k < p->motions; ++k)
-    memcpy(forces + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->space.rows; ++k)
+    memcpy(forces + k * p->places, p->internal.row[k], sizeof(double) * (size_t)p->places);
   breccia_model_destroy(&model);
   return forces;
 }

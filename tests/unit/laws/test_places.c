@@ -251,7 +251,7 @@ static void a_law_may_know_directions(void **state)
     f[4 * axis] += 1e-6;
     deform_uniformly(m, f);
     compute_forces(m);
-    pull[axis] = fabs(m->domain.particles->internal[axis][m->domain.particles->place_of[axis ? 3 : 24]]);
+    pull[axis] = fabs(m->domain.particles->internal.row[axis][m->domain.particles->place_of[axis ? 3 : 24]]);
     breccia_model_destroy(&m);
   }
   print_message("pull along x %g, along y %g\n", pull[0], pull[1]);
@@ -271,7 +271,7 @@ static void a_law_may_grade_its_history(void **state)
   deform_uniformly(m, f);
   compute_forces(m);
   const Particles *p = m->domain.particles;
-  const double *x = p->position[0], *force = p->internal[0], left = x[p->place_of[0]] + 0.25,
+  const double *x = p->position[0], *force = p->internal.row[0], left = x[p->place_of[0]] + 0.25,
                right = x[p->place_of[7]] - 0.25;
   assert_true(force[p->place_of[0]] > 0);
   assert_near(-force[p->place_of[7]] / force[p->place_of[0]], (1 + right) / (1 + left), 1e-9);

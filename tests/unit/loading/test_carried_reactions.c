@@ -35,8 +35,8 @@ static void what_held_the_weight_holds_it_under_dashpots(void **state)
     step_surely(m, 1);
     const Energy before = solver_energy(&m->solver);
     step_surely(m, INT64_MAX);
-    assert_true(largest(p, p->displacement) > 0.01);
-    assert_near(largest(p, p->velocity), 0, 1e-6 * 9.81 * 0.5); /* of free fall */
+    assert_true(largest(p, p->displacement.row) > 0.01);
+    assert_near(largest(p, p->velocity.row), 0, 1e-6 * 9.81 * 0.5); /* of free fall */
     assert_near(solver_energy(&m->solver).damping, before.damping, 1e-9);
     assert_near(solver_energy(&m->solver).external, before.external, 1e-6 * before.external);
     breccia_model_destroy(&m);
@@ -60,7 +60,7 @@ static void waves_pass_through_ground_with_weight_as_without(void **state)
                                 "hybrid", ", strain: small", k ? WEIGHT : "");
     step_surely(m, INT64_MAX);
     const Particles *p = m->domain.particles;
-    top[k] = p->velocity[0][p->place_of[p->count - 1]];
+    top[k] = p->velocity.row[0][p->place_of[p->count - 1]];
     breccia_model_destroy(&m);
   }
   assert_true(fabs(top[0]) > 0.05);
@@ -85,12 +85,12 @@ static void a_body_springs_back_as_its_reaction_goes(void **state)
   const int32_t end = p->place_of[p->count - 1];
   double at_first[2];
   step_surely(m, 1);
-  for (int k = 0; k < 2; ++k) at_first[k] = p->displacement[k][end];
+  for (int k = 0; k < 2; ++k) at_first[k] = p->displacement.row[k][end];
   assert_near(at_first[0] + at_first[1], 0.02 * sqrt(2), 1e-12);
   step_surely(m, 1);
-  for (int k = 0; k < 2; ++k) assert_near(p->displacement[k][end], at_first[k] / 2, 1e-9);
+  for (int k = 0; k < 2; ++k) assert_near(p->displacement.row[k][end], at_first[k] / 2, 1e-9);
   step_surely(m, INT64_MAX);
-  assert_near(largest(p, p->displacement), 0, 1e-10);
+  assert_near(largest(p, p->displacement.row), 0, 1e-10);
   assert_near(solver_energy(&m->solver).external, 0, 1e-9 * m->solver.ledger.paid);
   breccia_model_destroy(&m);
 }
@@ -109,13 +109,13 @@ static void a_run_goes_on_from_a_checkpoint_with_the_same_forces(void **state)
   StateList list = {0};
   breccia_model *later = model_of("%s", breccia_model_deck(models[0]));
   step_surely(later, 2); /* into the second stage */
-  for (int k = 0; k < 3; ++k) memset(later->domain.particles->displacement[k], 0, sizeof(double));
+  for (int k = 0; k < 3; ++k) memset(later->domain.particles->displacement.row[k], 0, sizeof(double));
   model_state(later, &list);
   assert_int_equal(state_return(&copy, &list, NULL), 0);
   step_surely(models[0], 20);
   step_surely(later, 20);
   for (int k = 0; k < 2; ++k)
-    assert_memory_equal(later->domain.particles->displacement[k], models[0]->domain.particles->displacement[k],
+    assert_memory_equal(later->domain.particles->displacement.row[k], models[0]->domain.particles->displacement.row[k],
                         sizeof(double) * (size_t)later->domain.particles->places);
   state_list_destroy(&list);
   state_copy_destroy(&copy);

@@ -26,7 +26,7 @@ static double velocity_at_top(const breccia_model *m, int axis)
   int32_t top = p->place_of[0];
   for (int64_t n = 0; n < p->count; ++n)
     if (p->position[axis][p->place_of[n]] > p->position[axis][top]) top = p->place_of[n];
-  return p->velocity[0][top];
+  return p->velocity.row[0][top];
 }
 
 static double energy_inside(const breccia_model *m)
@@ -86,7 +86,7 @@ static double shear_in(const breccia_model *m)
 {
   const Particles *p = m->domain.particles;
   double most = 0;
-  for (int64_t n = 0; n < p->count; ++n) most = larger_of(most, fabs(p->velocity[1][p->place_of[n]]));
+  for (int64_t n = 0; n < p->count; ++n) most = larger_of(most, fabs(p->velocity.row[1][p->place_of[n]]));
   return most;
 }
 
@@ -189,7 +189,7 @@ static void dashpots_do_nothing_at_rest(void **state)
                                   "{on: {face: x+}, force: [2, 0]}]\nsolve: {static: {increments: 2}}\n");
   while (!solver_is_done(&m->solver)) step_surely(m, 1);
   const Particles *p = m->domain.particles;
-  assert_near(p->displacement[0][p->place_of[0]], 2.0 / 5, 1e-6);
+  assert_near(p->displacement.row[0][p->place_of[0]], 2.0 / 5, 1e-6);
   assert_near(solver_energy(&m->solver).damping, 0, 1e-9);
   breccia_model_plausibility(m); /* which looks at the loads */
   assert_non_null(strstr(breccia_model_warnings(m), "dashpots: they hold nothing in a stage at rest"));
@@ -234,7 +234,8 @@ static void each_material_of_a_face_has_its_own_impedance(void **state)
   const Particles *p = m->domain.particles;
   step_surely(m, INT64_MAX);
   double mean[2] = {0};
-  for (int64_t n = 0; n < p->count; ++n) mean[p->block[p->place_of[n] / SLICE]] += p->velocity[0][p->place_of[n]] / 80;
+  for (int64_t n = 0; n < p->count; ++n)
+    mean[p->block[p->place_of[n] / SLICE]] += p->velocity.row[0][p->place_of[n]] / 80;
   for (int block = 0; block < 2; ++block) assert_near(mean[block], 0.5 * exp(-1.5 / 0.5 * 0.2), 0.01 * 0.5);
   assert_balanced(m, 1e-7);
   breccia_model_destroy(&m);

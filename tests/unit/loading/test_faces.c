@@ -59,7 +59,7 @@ static double largest_left(breccia_model *m, const char *space)
   loading_apply(&m->loading, p, 1);
   for (int32_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
-      most = larger_of(most, fabs(p->internal[k][p->place_of[n]] + p->external[k][p->place_of[n]]));
+      most = larger_of(most, fabs(p->internal.row[k][p->place_of[n]] + p->external.row[k][p->place_of[n]]));
   return most * 0.1 / 3; /* times the spacing, over the largest stress */
 }
 
@@ -99,7 +99,7 @@ static Sums forces_of(breccia_model *m, int axis, double *at)
   *at = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    *at += p->position[axis][i] * p->external[by][i] * p->volume[i] / sums.external[by];
+    *at += p->position[axis][i] * p->external.row[by][i] * p->volume[i] / sums.external[by];
   }
   return sums;
 }
@@ -146,7 +146,7 @@ static void water_presses_by_depth_at_the_face(void **state)
     const int32_t i = p->place_of[n];
     if (fabs(p->position[1][i] - 1.05) > 1e-9) continue;
     const int layer = (int)lround((p->position[0][i] - 0.05) / 0.1);
-    if (layer < 4) force[layer] = p->external[0][i] * p->volume[i];
+    if (layer < 4) force[layer] = p->external.row[0][i] * p->volume[i];
   }
   const double whole = 10 * (3 - 1.05) * 0.1 * 0.3;
   assert_near(force[0], 1.5 * whole, 1e-12);
@@ -194,7 +194,7 @@ static void a_pulled_bar_strains_evenly_to_its_end(void **state)
         for (int32_t n = 0; n < p->count; ++n) {
           const int32_t i = p->place_of[n];
           if (body_outside(&m->domain.body, n)) continue;
-          off = larger_of(off, fabs(p->displacement[0][i] - 2e-4 * p->position[0][i]));
+          off = larger_of(off, fabs(p->displacement.row[0][i] - 2e-4 * p->position[0][i]));
         }
         if (spread)
           assert_true(off > 1e-2 * 2e-5);

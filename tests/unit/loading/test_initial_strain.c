@@ -92,7 +92,7 @@ static void a_free_body_takes_it_without_stress(void **state)
     const int32_t corner = p->place_of[0];
     for (int32_t i = 0; i < p->count; ++i)
       for (int k = 0; k < m->domain.body.dimensions; ++k)
-        assert_near(p->displacement[k][p->place_of[i]],
+        assert_near(p->displacement.row[k][p->place_of[i]],
                     natural * (p->position[k][p->place_of[i]] - p->position[k][corner]),
                     /* Green's strain of the formulations of small strains in space; of finite ones lengths are exact */
                     2 * natural * natural + 1e-9 * fabs(natural));
@@ -140,7 +140,7 @@ static void a_free_body_of_two_materials_takes_it_without_stress(void **state)
     const int32_t corner = p->place_of[0];
     for (int32_t i = 0; i < p->count; ++i)
       for (int k = 0; k < m->domain.body.dimensions; ++k)
-        assert_near(p->displacement[k][p->place_of[i]],
+        assert_near(p->displacement.row[k][p->place_of[i]],
                     natural * (p->position[k][p->place_of[i]] - p->position[k][corner]),
                     2 * natural * natural + 1e-9 * fabs(natural));
     /* Two formulations measure strains of second order differently. */
@@ -173,13 +173,13 @@ static void either_half_may_be_warm(void **state)
     }
     const Particles *p = sides[0]->domain.particles, *q = sides[1]->domain.particles;
     double largest = 0;
-    for (int64_t k = 0; k < p->count; ++k) largest = larger_of(largest, fabs(p->internal[0][p->place_of[k]]));
+    for (int64_t k = 0; k < p->count; ++k) largest = larger_of(largest, fabs(p->internal.row[0][p->place_of[k]]));
     assert_true(largest > 1);
     for (int64_t k = 0; k < p->count; ++k) {
       const int32_t i = p->place_of[k],
                     j = particles_nearest(q, (double[]){0.9 - p->position[0][i], p->position[1][i], 0});
-      assert_near(p->internal[0][i], -q->internal[0][j], 1e-9 * largest);
-      assert_near(p->internal[1][i], q->internal[1][j], 1e-9 * largest);
+      assert_near(p->internal.row[0][i], -q->internal.row[0][j], 1e-9 * largest);
+      assert_near(p->internal.row[1][i], q->internal.row[1][j], 1e-9 * largest);
     }
     for (int right = 0; right < 2; ++right) breccia_model_destroy(&sides[right]);
   }
@@ -281,40 +281,37 @@ static void tangents_know_it(void **state)
     breccia_model *m = body_of(&cases[n / SPACES], n % SPACES, loads, AT_REST);
     Domain *d = &m->domain;
     Particles *p = d->particles;
-    double *v[MOTIONS] = {NULL}, *change[MOTIONS] = {NULL}, *force[2][MOTIONS] = {{NULL}};
+    Vector v[1] = {{0}}, change[1] = {{0}}, force[2] = {{0}};
     uint64_t seed = 3;
     domain_tell_time(d, 0, 0);
-    for (int k = 0; k < p->motions; ++k) {
-      v[k] = places_array(p->places, "test", NULL);
-      change[k] = places_array(p->places, "test", NULL);
-      for (int side = 0; side < 2; ++side) force[side][k] = places_array(p->places, "test", NULL);
-      for (int32_t i = 0; i < p->count && (k < d->body.dimensions || k >= ROTATION); ++i) {
-        p->displacement[k][p->place_of[i]] = 0.005 * (random_uniform(&seed) - 0.5);
-        v[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
+    assert_true(vector_create(v, &p->space, "test", NULL) && vector_create(change, &p->space, "test", NULL));
+    for (int side = 0; side < 2; ++side) assert_true(vector_create(&force[side], &p->space, "test", NULL));
+    for (int k = 0; k < p->space.rows; ++k) {
+      for (int32_t i = 0; i < p->count && (k < d->body.dimensions || k >= p->space.rotation); ++i) {
+        p->displacement.row[k][p->place_of[i]] = 0.005 * (random_uniform(&seed) - 0.5);
+        v->row[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
       }
     }
     assert_int_equal(domain_linearise(d, NULL, NULL), 0);
     domain_linear_step(d, v, change);
     const double h = 1e-6;
     for (int side = 0; side < 2; ++side) {
-      for (int k = 0; k < p->motions; ++k)
-        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+      for (int k = 0; k < p->space.rows; ++k)
+        for (int64_t i = 0; i < p->places; ++i) p->displacement.row[k][i] += (side ? -2 : 1) * h * v->row[k][i];
       domain_evaluate(d, NULL);
-      for (int k = 0; k < p->motions; ++k) memcpy(force[side][k], p->internal[k], sizeof(double) * (size_t)p->places);
+      vector_copy(&force[side], &p->internal);
     }
     double most = 0, off = 0;
-    for (int k = 0; k < p->motions; ++k)
+    for (int k = 0; k < p->space.rows; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
-        most = larger_of(most, fabs(change[k][i]));
-        off = larger_of(off, fabs(change[k][i] - (force[0][k][i] - force[1][k][i]) / (2 * h)));
+        most = larger_of(most, fabs(change->row[k][i]));
+        off = larger_of(off, fabs(change->row[k][i] - (force[0].row[k][i] - force[1].row[k][i]) / (2 * h)));
       }
     assert_true(most > 0);
     assert_near(off / most, 0, 1e-6);
-    for (int k = 0; k < p->motions; ++k) {
-      places_free(&v[k]);
-      places_free(&change[k]);
-      for (int side = 0; side < 2; ++side) places_free(&force[side][k]);
-    }
+    vector_destroy(v);
+    vector_destroy(change);
+    for (int side = 0; side < 2; ++side) vector_destroy(&force[side]);
     breccia_model_destroy(&m);
   }
 }
@@ -419,7 +416,7 @@ static void it_comes_in_one_stage_and_goes_in_another(void **state)
   const double wanted[] = {0, 0.5e-3, 1e-3, 0};
   for (int step = 0; step < 4; ++step) {
     step_surely(m, 1);
-    assert_near(m->domain.particles->displacement[0][last], 0.8 * wanted[step], 2e-6);
+    assert_near(m->domain.particles->displacement.row[0][last], 0.8 * wanted[step], 2e-6);
   }
   breccia_model_destroy(&m);
 }

@@ -24,7 +24,7 @@ static double largest_force(const breccia_model *m)
   double most = 0;
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
-      if (!body_outside(&m->domain.body, n)) most = larger_of(most, fabs(p->internal[k][p->place_of[n]]));
+      if (!body_outside(&m->domain.body, n)) most = larger_of(most, fabs(p->internal.row[k][p->place_of[n]]));
   return most;
 }
 
@@ -120,7 +120,7 @@ static void a_face_that_slides_takes_pressure_and_no_shear(void **state)
     for (int64_t n = 0; n < p->count; ++n)
       for (int k = 0; k < 3; ++k) {
         const int32_t i = p->place_of[n];
-        if (!body_outside(&m->domain.body, n)) force[k] += p->volume[i] * p->internal[k][i];
+        if (!body_outside(&m->domain.body, n)) force[k] += p->volume[i] * p->internal.row[k][i];
       }
     assert_near(force[0], 300 * 0.6 * 0.8, 1e-9);
     assert_near(force[1], 0, 1e-9);
@@ -142,7 +142,7 @@ static void assert_springs(breccia_model *m, const double strain[6], const doubl
     const double u[3] = {
         strain[XX] * x[0] + strain[XY] * x[1] + strain[ZX] * x[2], strain[YY] * x[1] + strain[YZ] * x[2],
         strain[ZZ] * x[2]}; /* as three points hold it: shear leaves the planes of y and z where they are */
-    for (int k = 0; k < m->domain.body.dimensions; ++k) assert_near(p->displacement[k][i], u[k], 1e-8);
+    for (int k = 0; k < m->domain.body.dimensions; ++k) assert_near(p->displacement.row[k][i], u[k], 1e-8);
   }
   assert_stress(m, stress, 1e-5);
   assert_balanced(m, 1e-5);

@@ -99,7 +99,7 @@ static void water_presses_by_its_depth(void **state)
     double moment = 0;
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      moment += p->external[0][i] * p->volume[i] * p->position[bodies[b].up][i];
+      moment += p->external.row[0][i] * p->volume[i] * p->position[bodies[b].up][i];
     }
     assert_near(fabs(moment), 8 * 1.5 * (1.5 * 1.5 + 0.1 * 0.1 / 2) / 6, 1e-12);
     breccia_model_destroy(&m);
@@ -132,9 +132,9 @@ static void radial_pressure_pushes_half_a_pipe_by_its_diameter(void **state)
   const int32_t i = p->place_of[0];
   const double dx = p->position[0][i] - 1, dz = p->position[2][i] + 2, r = sqrt(dx * dx + dz * dz);
   const double force = -3 * 5 / (64 * 1e-3); /* per volume */
-  assert_near(p->external[0][i], force * dx / r, 1e-12 * fabs(force));
-  assert_near(p->external[1][i], 0, 0);
-  assert_near(p->external[2][i], force * dz / r, 1e-12 * fabs(force));
+  assert_near(p->external.row[0][i], force * dx / r, 1e-12 * fabs(force));
+  assert_near(p->external.row[1][i], 0, 0);
+  assert_near(p->external.row[2][i], force * dz / r, 1e-12 * fabs(force));
   breccia_model_destroy(&m);
 }
 
@@ -159,13 +159,14 @@ static void the_ground_moves_as_seen_from_itself(void **state)
     const Sums s = sums_of(frame);
     assert_near(s.external[0], -s.mass * 2 * sin(w * t), 1e-12); /* against the acceleration */
     assert_near(s.external[2], s.mass * 1 * sin(w * t), 1e-12);
-    assert_near(q->displacement[0][held], 2 * (t / w - sin(w * t) / (w * w)), 1e-12); /* the integral of the integral */
+    assert_near(q->displacement.row[0][held], 2 * (t / w - sin(w * t) / (w * w)),
+                1e-12); /* the integral of the integral */
     for (int64_t n = 0; n < p->count; ++n)
       for (int k = 0; k < 3; k += 2) {
         const int32_t i = p->place_of[n];
-        const double relative = q->displacement[k][i] - q->displacement[k][held];
+        const double relative = q->displacement.row[k][i] - q->displacement.row[k][held];
         largest = larger_of(largest, fabs(relative));
-        assert_near(relative, p->displacement[k][i], 2e-6);
+        assert_near(relative, p->displacement.row[k][i], 2e-6);
       }
   }
   assert_true(largest > 1e-3);
@@ -221,8 +222,8 @@ static void a_body_is_thrown_and_spins_as_said(void **state)
   assert_int_equal(breccia_model_step(about, 1, NULL), 0);
   const Particles *p = about->domain.particles;
   const int32_t i = particles_nearest(p, (double[]){0.35, 0.25, 0.15});
-  assert_near(p->velocity[1][i], -2 * p->position[2][i], 1e-4);
-  assert_near(p->velocity[2][i], 2 * (p->position[1][i] - 1), 1e-4);
+  assert_near(p->velocity.row[1][i], -2 * p->position[2][i], 1e-4);
+  assert_near(p->velocity.row[2][i], 2 * (p->position[1][i] - 1), 1e-4);
   breccia_model_destroy(&about);
 }
 
@@ -268,14 +269,14 @@ static void assert_half_moves_as_whole(const char *solve)
     const int32_t i = q->place_of[n];
     if (q->position[0][i] < 0) { /* outside: the other way across the face, the same way along it */
       const int32_t image = particles_nearest(q, (double[]){-q->position[0][i], q->position[1][i], 0});
-      assert_near(q->velocity[0][i], -q->velocity[0][image], 1e-12);
-      assert_near(q->velocity[1][i], q->velocity[1][image], 1e-12);
+      assert_near(q->velocity.row[0][i], -q->velocity.row[0][image], 1e-12);
+      assert_near(q->velocity.row[1][i], q->velocity.row[1][image], 1e-12);
       continue;
     }
     const int32_t j = particles_nearest(p, (double[]){q->position[0][i], q->position[1][i], 0});
     for (int k = 0; k < 2; ++k) {
-      largest = larger_of(largest, fabs(p->displacement[k][j]));
-      assert_near(q->displacement[k][i], p->displacement[k][j], 1e-10);
+      largest = larger_of(largest, fabs(p->displacement.row[k][j]));
+      assert_near(q->displacement.row[k][i], p->displacement.row[k][j], 1e-10);
     }
     assert_near(half->domain.stress[0][i], whole->domain.stress[0][j], 1e-6);
   }
@@ -299,16 +300,17 @@ static void assert_part_moves_as_whole(const breccia_model *part, const breccia_
   const Particles *p = whole->domain.particles, *q = part->domain.particles;
   double largest = 0;
   for (int k = 0; k < 3; ++k)
-    for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement[k][p->place_of[n]]));
+    for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement.row[k][p->place_of[n]]));
   assert_true(largest > 0);
   for (int64_t n = 0; n < q->count; ++n) {
     const int32_t i = q->place_of[n];
     if (body_outside(&part->domain.body, n)) continue;
     const int32_t j = particles_nearest(p, (double[]){q->position[0][i], q->position[1][i], q->position[2][i]});
     for (int k = 0; k < 3; ++k)
-      if (!(fabs(q->displacement[k][i] - p->displacement[k][j]) <= 1e-9 * largest))
+      if (!(fabs(q->displacement.row[k][i] - p->displacement.row[k][j]) <= 1e-9 * largest))
         fail_msg("%s: at [%g, %g, %g] along %c: %.12g, in the whole body %.12g", what, q->position[0][i],
-                 q->position[1][i], q->position[2][i], "xyz"[k], q -> displacement[k][i], p -> displacement[k][j]);
+                 q->position[1][i], q->position[2][i], "xyz"[k], q -> displacement.row[k][i],
+                 p->displacement.row[k][j]);
   }
 }
 
@@ -394,8 +396,8 @@ static void stresses_are_right_up_to_a_support(void **state)
       const int32_t i = body_nearest(&m->domain.body, (double[]){x, y, 0});
       assert_near(m->domain.stress[0][i], 5, 0.01 * 5);
       assert_near(m->domain.stress[1][i], 0, 0.02 * 5);
-      assert_near(m->domain.particles->displacement[0][i], 5e-4 * x, 0.01 * 5e-4);
-      assert_near(m->domain.particles->displacement[1][i], -1.25e-4 * y, 0.01 * 5e-4);
+      assert_near(m->domain.particles->displacement.row[0][i], 5e-4 * x, 0.01 * 5e-4);
+      assert_near(m->domain.particles->displacement.row[1][i], -1.25e-4 * y, 0.01 * 5e-4);
     }
   breccia_model_destroy(&m);
 }
@@ -413,7 +415,7 @@ static void a_face_goes_where_its_support_goes(void **state)
   run_all(m);
   const int32_t i = body_nearest(&m->domain.body, (double[]){1.95, 0.65, 0});
   const int32_t j = body_nearest(&m->domain.body, (double[]){1, 0.6, 0});
-  assert_near(m->domain.particles->displacement[0][i], 2e-3 * 1.95 / 2, 0.02 * 2e-3);
+  assert_near(m->domain.particles->displacement.row[0][i], 2e-3 * 1.95 / 2, 0.02 * 2e-3);
   assert_near(m->domain.stress[0][j], 10, 0.02 * 10);
   assert_near(solver_energy(&m->solver).imbalance, 0, 1e-2);
   breccia_model_destroy(&m);
@@ -487,8 +489,8 @@ static void a_rigid_platen_presses_by_contact(void **state)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (p->block[i / SLICE] == 1) {
-      platen += p->internal[1][i] * p->volume[i];
-      assert_near(p->displacement[1][i], -0.01, 1e-12);
+      platen += p->internal.row[1][i] * p->volume[i];
+      assert_near(p->displacement.row[1][i], -0.01, 1e-12);
     } else if (fabs(p->position[1][i] - 0.35) < 1e-6) {
       section += m->domain.stress[1][i] * 0.1;
       strain += m->domain.strain[1][i] / 20;

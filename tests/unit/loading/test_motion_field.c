@@ -25,7 +25,7 @@ static double farthest(const breccia_model *m, const double g[4], const double c
     const int32_t i = p->place_of[n];
     for (int k = 0; k < 2; ++k) {
       const double wanted = g[2 * k] * p->position[0][i] + g[2 * k + 1] * p->position[1][i] + c[k];
-      off = larger_of(off, fabs(p->displacement[k][i] - wanted));
+      off = larger_of(off, fabs(p->displacement.row[k][i] - wanted));
       most = larger_of(most, fabs(wanted));
     }
   }

@@ -24,7 +24,7 @@ static Wrench wrench_of(const breccia_model *model, const char *load)
 static double moved_at(const breccia_model *m, int axis, double x, double y)
 {
   const Particles *p = m->domain.particles;
-  return p->displacement[axis][particles_nearest(p, (double[]){x, y, 0})];
+  return p->displacement.row[axis][particles_nearest(p, (double[]){x, y, 0})];
 }
 
 static const Constraint *one_sided_of(const breccia_model *m)
@@ -221,7 +221,7 @@ static void an_eccentric_load_tips_a_block_on_rollers(void **state)
     assert_near(w.moment[2], 10.0 * x, 0.1); /* lever arms are those of the deformed body */
     const Constraint *c = one_sided_of(m);
     for (int64_t n = 0; n < c->one_sided->count; ++n) {
-      const double u = constraint_along(c, m->domain.particles->displacement, c->load->selection.places[n]);
+      const double u = constraint_along(c, m->domain.particles->displacement.row, c->load->selection.places[n]);
       assert_true(c->one_sided->open[n] ? u >= -1e-9 : u == 0);
       assert_true(c->one_sided->open[n] ? c->one_sided->found[n] == 0 : c->one_sided->found[n] >= -1e-6);
     }

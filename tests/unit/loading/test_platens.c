@@ -33,7 +33,7 @@ static Wrench wrench_of(breccia_model *model, const char *load)
 static double moved_at(const breccia_model *m, double x, double y)
 {
   const Particles *p = m->domain.particles;
-  return p->displacement[1][particles_nearest(p, (double[]){x, y, 0})];
+  return p->displacement.row[1][particles_nearest(p, (double[]){x, y, 0})];
 }
 
 static breccia_model *run_of(const char *load, const char *solve)
@@ -174,7 +174,7 @@ static void a_block_hangs_on_its_platen(void **state)
   double at[2][2];
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
-      at[a][b] = p->displacement[1][particles_nearest(p, (double[]){a ? 35 : 5, 45, b ? 25 : 5})];
+      at[a][b] = p->displacement.row[1][particles_nearest(p, (double[]){a ? 35 : 5, 45, b ? 25 : 5})];
   assert_near(at[0][0] + at[1][1], at[0][1] + at[1][0], 1e-12);
   assert_near((at[0][0] + at[1][1]) / 2, -0.01, 1e-12);
   assert_true(fabs(at[1][0] - at[0][0]) > 1e-4 && fabs(at[0][1] - at[0][0]) > 1e-4);

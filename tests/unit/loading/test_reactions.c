@@ -211,8 +211,8 @@ static void what_holds_a_rotation_exerts_a_moment_and_no_force(void **state)
   double moment[3] = {0}, pushed = 0;
   for (int64_t n = 0; n < held->count; ++n) {
     const int32_t i = held->places[n];
-    pushed = larger_of(pushed, fabs(p->volume[i] * p->internal[1][i]));
-    for (int k = 0; k < 3; ++k) moment[k] -= p->volume[i] * p->internal[ROTATION + k][i];
+    pushed = larger_of(pushed, fabs(p->volume[i] * p->internal.row[1][i]));
+    for (int k = 0; k < 3; ++k) moment[k] -= p->volume[i] * p->internal.row[p->space.rotation + k][i];
   }
   const Wrench turns = sum_of(model, NULL, "turns", NULL), wall = sum_of(model, NULL, "wall", NULL),
                both = sum_of(model, NULL, NULL, turns.about);
@@ -294,7 +294,7 @@ static void a_shaken_body_is_pushed_by_its_change_of_momentum(void **state)
       before[k] = now[k];
       now[k] = after[k];
       after[k] = 0;
-      for (int64_t i = 0; i < p->places; ++i) after[k] += p->density[i] * p->volume[i] * p->displacement[k][i];
+      for (int64_t i = 0; i < p->places; ++i) after[k] += p->density[i] * p->volume[i] * p->displacement.row[k][i];
       const double pushed = (after[k] - 2 * now[k] + before[k]) / (dt * dt) + 30 * (after[k] - before[k]) / (2 * dt);
       largest = larger_of(largest, fabs(pushed));
       if (step > 2) assert_near(found.force[k], pushed, 1e-6 * largest);

@@ -125,8 +125,9 @@ static void find_resultants(breccia_model *m, double force[3], double moment[3])
     const int32_t i = p->place_of[n];
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
-      force[k] += p->volume[i] * p->external[k][i];
-      moment[k] += p->volume[i] * (p->position[a][i] * p->external[b][i] - p->position[b][i] * p->external[a][i]);
+      force[k] += p->volume[i] * p->external.row[k][i];
+      moment[k] +=
+          p->volume[i] * (p->position[a][i] * p->external.row[b][i] - p->position[b][i] * p->external.row[a][i]);
     }
   }
 }
@@ -232,7 +233,7 @@ static void a_traction_balances_the_uniaxial_stress_of_bonds(void **state)
     const int32_t i = p->place_of[n];
     const double depth = length - p->position[0][i];
     if (depth < 1.1 * horizon || depth > 1.8 * horizon) continue;
-    const double in = p->volume[i] * p->internal[0][i], out = p->volume[i] * p->external[0][i];
+    const double in = p->volume[i] * p->internal.row[0][i], out = p->volume[i] * p->external.row[0][i];
     both += in * out;
     pulled += out * out;
     inner += in * in;

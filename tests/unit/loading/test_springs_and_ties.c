@@ -62,7 +62,7 @@ static void two_bodies_on_one_spring_swing_about_their_centre_of_mass(void **sta
   while (m->solver.clock.time < 0.9) {
     assert_int_equal(breccia_model_step(m, 40, NULL), 0);
     const double t = breccia_model_time(m);
-    const double apart = mean_along(m, 0, p->displacement[0]) - mean_along(m, 1, p->displacement[0]);
+    const double apart = mean_along(m, 0, p->displacement.row[0]) - mean_along(m, 1, p->displacement.row[0]);
     assert_near(apart, 0.3 / w * sin(w * t), 2e-4 * 0.3 / w);
     assert_near(sums_of(m).momentum[0], 0.054 * 0.3, 1e-12);
   }
@@ -100,11 +100,11 @@ static void tied_bodies_move_as_one_and_keep_their_momentum(void **state)
         for (double z = 0.05; z < 0.3; z += 0.1) {
           const int32_t a = particles_nearest(p, (double[]){0.25, y, z}),
                         b = particles_nearest(p, (double[]){1.05, y, z});
-          for (int k = 0; k < 3; ++k) assert_true(p->displacement[k][a] == p->displacement[k][b]);
+          for (int k = 0; k < 3; ++k) assert_true(p->displacement.row[k][a] == p->displacement.row[k][b]);
         }
       for (int k = 0; k < 3 && !local; ++k) assert_near(sums_of(m).momentum[k], given[k], 1e-12);
     }
-    assert_true(mean_along(m, 1, p->displacement[0]) > 1e-3); /* b goes along */
+    assert_true(mean_along(m, 1, p->displacement.row[0]) > 1e-3); /* b goes along */
     assert_balanced(m, 2e-3);
     breccia_model_destroy(&m);
   }
@@ -125,9 +125,9 @@ static void unlike_tied_bodies_are_pushed_by_the_mass_of_both(void **state)
   while (!solver_is_done(&m->solver)) {
     step_surely(m, 1);
     const double t = breccia_model_time(m);
-    assert_near(mean_along(m, 1, m->domain.particles->displacement[0]), 0.3 / mass * t * t / 2,
+    assert_near(mean_along(m, 1, m->domain.particles->displacement.row[0]), 0.3 / mass * t * t / 2,
                 1e-6 * 0.3 / mass * 2e-4);
-    assert_near(mean_along(m, 0, m->domain.particles->velocity[2]), -0.1 / mass * t, 1e-6 * 0.1 / mass * 0.02);
+    assert_near(mean_along(m, 0, m->domain.particles->velocity.row[2]), -0.1 / mass * t, 1e-6 * 0.1 / mass * 0.02);
   }
   breccia_model_destroy(&m);
 }
@@ -142,8 +142,8 @@ static void a_tie_in_one_direction_leaves_the_others(void **state)
   step_surely(m, INT64_MAX);
   const Particles *p = m->domain.particles;
   const int32_t a = particles_nearest(p, (double[]){0, 0, 0.4}), b = particles_nearest(p, (double[]){0.4, 0.4, 0.4});
-  assert_true(p->displacement[2][a] == p->displacement[2][b] && p->displacement[2][a] > 0);
-  assert_true(fabs(p->displacement[0][a] - p->displacement[0][b]) > 1e-3 * fabs(p->displacement[0][a]));
+  assert_true(p->displacement.row[2][a] == p->displacement.row[2][b] && p->displacement.row[2][a] > 0);
+  assert_true(fabs(p->displacement.row[0][a] - p->displacement.row[0][b]) > 1e-3 * fabs(p->displacement.row[0][a]));
   assert_balanced(m, 2e-3);
   breccia_model_destroy(&m);
 }
@@ -182,7 +182,7 @@ static void a_spring_between_blocks_at_rest_is_stretched_by_its_force(void **sta
                                 rest);
     step_surely(m, INT64_MAX);
     const Particles *p = m->domain.particles;
-    assert_near(mean_along(m, 1, p->displacement[0]), (later ? 0 : 0.01) + 0.018 / 9, 1e-8 * 0.018 / 9);
+    assert_near(mean_along(m, 1, p->displacement.row[0]), (later ? 0 : 0.01) + 0.018 / 9, 1e-8 * 0.018 / 9);
     breccia_model_destroy(&m);
   }
 }
@@ -208,8 +208,8 @@ static void a_column_with_tied_sides_shears_as_if_it_had_none(void **state)
   const int32_t top = particles_nearest(p, (double[]){0.25, 1.95, 0}),
                 side = particles_nearest(p, (double[]){0.05, 1.95, 0});
   const double z = 1.95 - 0.25, expected = 2 * 1 * (height * z - z * z / 2) / shear;
-  assert_near(p->displacement[0][top], expected, 0.05 * expected);
-  assert_near(p->displacement[0][side], p->displacement[0][top], 0.02 * expected);
+  assert_near(p->displacement.row[0][top], expected, 0.05 * expected);
+  assert_near(p->displacement.row[0][side], p->displacement.row[0][top], 0.02 * expected);
   breccia_model_destroy(&m);
 }
 

@@ -100,8 +100,8 @@ static void strengths_of_all_regions_are_divided(void **state)
   for (int c = 0; c < 2; ++c)
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      apart = larger_of(apart, fabs(p->internal[c][i] - q->internal[c][i]));
-      largest = larger_of(largest, fabs(q->internal[c][i]));
+      apart = larger_of(apart, fabs(p->internal.row[c][i] - q->internal.row[c][i]));
+      largest = larger_of(largest, fabs(q->internal.row[c][i]));
     }
   if (!(apart <= 1e-4 * largest)) fail_msg("forces are %g of %g apart", apart, largest);
   for (int s = 0; s < 2; ++s) breccia_model_destroy(&m[s]);
@@ -203,7 +203,7 @@ static void ground_that_slides_has_lost_its_equilibrium(void **state)
     const double factor = solver_strength_reduction(&m->solver);
     const Particles *p = m->domain.particles;
     double moved = 0;
-    for (int64_t n = 0; n < p->count; ++n) moved = larger_of(moved, fabs(p->displacement[0][p->place_of[n]]));
+    for (int64_t n = 0; n < p->count; ++n) moved = larger_of(moved, fabs(p->displacement.row[0][p->place_of[n]]));
     print_message("%s strain: %g, lost at %g, slides: %g, moved %g of %g\n", strains[k], factor, record->lost_reduction,
                   record->slides, moved, record->elastic_displacement);
     if (status) fail_msg("%s strain: %s", strains[k], breccia_error_text(error));
@@ -347,7 +347,7 @@ static void a_column_of_soil_without_tension_stands(void **state)
         formulations[k]);
     step_surely(m, INT64_MAX);
     const Particles *p = m->domain.particles;
-    const double top = p->displacement[1][particles_nearest(p, (double[]){0.35, 0.75, 0})];
+    const double top = p->displacement.row[1][particles_nearest(p, (double[]){0.35, 0.75, 0})];
     assert_near(top, -2.0 * 0.8 * 0.8 / 2 * (1 - 0.09) / 1e5, 0.15e-6 * 2);
     breccia_model_destroy(&m);
   }

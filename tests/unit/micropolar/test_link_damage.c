@@ -9,11 +9,11 @@
 static double pull(breccia_model *model, int b, double stretch)
 {
   const Particles *p = model->domain.particles;
-  p->displacement[0][p->place_of[b]] = p->displacement[0][p->place_of[b - 1]] + 0.1 * stretch;
+  p->displacement.row[0][p->place_of[b]] = p->displacement.row[0][p->place_of[b - 1]] + 0.1 * stretch;
   compute_forces(model);
   domain_commit_points(&model->domain);
   double sum = 0;
-  for (int64_t n = b; n < p->count; ++n) sum -= p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
+  for (int64_t n = b; n < p->count; ++n) sum -= p->volume[p->place_of[n]] * p->internal.row[0][p->place_of[n]];
   return sum;
 }
 
@@ -111,10 +111,10 @@ static void links_crush_beside_torn_ones(void **state)
                                    "hexagonal", "[3, 1]", "plane stress");
       const Particles *p = model->domain.particles;
       const double ea = stiffness_of(model), s[2] = {torn ? 1.5e-4 : 0.5e-4, -6e-4};
-      p->displacement[0][p->place_of[1]] = 0.1 * s[mirrored];
-      p->displacement[0][p->place_of[2]] = 0.1 * (s[0] + s[1]);
+      p->displacement.row[0][p->place_of[1]] = 0.1 * s[mirrored];
+      p->displacement.row[0][p->place_of[2]] = 0.1 * (s[0] + s[1]);
       compute_forces(model);
-      const double force = p->volume[p->place_of[mirrored ? 0 : 2]] * p->internal[0][p->place_of[mirrored ? 0 : 2]];
+      const double force = p->volume[p->place_of[mirrored ? 0 : 2]] * p->internal.row[0][p->place_of[mirrored ? 0 : 2]];
       assert_near(force * (mirrored ? -1 : 1) / (ea * 6e-4), torn ? 0.5 : 1, 1e-9); /* (6 - 2) / (4 . 2) is lost */
       breccia_model_destroy(&model);
     }
@@ -129,7 +129,7 @@ static void links_crush_beside_broken_ones(void **state)
   Particles *p = model->domain.particles;
   Family *f = &model->domain.family;
   const double ea = stiffness_of(model);
-  p->displacement[0][p->place_of[1]] = p->displacement[0][p->place_of[2]] = 0.1 * 1.5e-4;
+  p->displacement.row[0][p->place_of[1]] = p->displacement.row[0][p->place_of[2]] = 0.1 * 1.5e-4;
   compute_forces(model);
   domain_commit_points(&model->domain);
   const double damage = micropolar_history(formulation_of(model), p->place_of[0], 0);
@@ -138,9 +138,9 @@ static void links_crush_beside_broken_ones(void **state)
     const int32_t a = p->place_of[end], b = p->place_of[1 - end];
     f->intact[family_slot(f, a, b)] &= (uint8_t) ~(1u << a % SLICE);
   }
-  p->displacement[0][p->place_of[2]] -= 0.1 * 6e-4;
+  p->displacement.row[0][p->place_of[2]] -= 0.1 * 6e-4;
   compute_forces(model);
-  assert_near(p->volume[p->place_of[2]] * p->internal[0][p->place_of[2]] / (ea * 6e-4), 0.5, 1e-9);
+  assert_near(p->volume[p->place_of[2]] * p->internal.row[0][p->place_of[2]] / (ea * 6e-4), 0.5, 1e-9);
   assert_near(micropolar_history(formulation_of(model), p->place_of[0], 0), damage, 1e-12);
   breccia_model_destroy(&model);
 }
@@ -202,9 +202,9 @@ static void damage_stays_only_where_steps_come_out_well(void **state)
   const Particles *p = model->domain.particles;
   const Micropolar *m = formulation_of(model);
   const double ea = stiffness_of(model);
-  p->displacement[0][p->place_of[1]] = 0.1 * 1.5e-4;
+  p->displacement.row[0][p->place_of[1]] = 0.1 * 1.5e-4;
   compute_forces(model);
-  assert_near(-p->volume[p->place_of[1]] * p->internal[0][p->place_of[1]] / (ea * 1e-4), 0.75, 1e-9);
+  assert_near(-p->volume[p->place_of[1]] * p->internal.row[0][p->place_of[1]] / (ea * 1e-4), 0.75, 1e-9);
   micropolar_commit(model->domain.regions[0].formulation, false);
   assert_near(pull(model, 1, 0.9e-4) / (ea * 1e-4), 0.9, 1e-9);
   domain_set_elastic_stage(&model->domain, true);
@@ -241,8 +241,8 @@ static void what_was_tried_leaves_nothing_behind(void **state)
     breccia_error_destroy(&error);
   }
   for (int way = 1; way < WAYS; ++way)
-    for (int k = 0; k < MOTIONS && models[0]->domain.particles->internal[k]; ++k)
-      assert_memory_equal(models[0]->domain.particles->internal[k], models[way]->domain.particles->internal[k],
+    for (int k = 0; k < MAX_ROWS && models[0]->domain.particles->internal.row[k]; ++k)
+      assert_memory_equal(models[0]->domain.particles->internal.row[k], models[way]->domain.particles->internal.row[k],
                           sizeof(double) * (size_t)models[0]->domain.particles->places);
   for (int way = 0; way < WAYS; ++way) breccia_model_destroy(&models[way]);
 }
@@ -277,13 +277,13 @@ static double work_to_part(const char *law, const char *family, const char *latt
     double force = 0;
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      if (p->position[1][i] > (low + high) / 2) p->displacement[1][i] = k * opening;
+      if (p->position[1][i] > (low + high) / 2) p->displacement.row[1][i] = k * opening;
     }
     compute_forces(model);
     domain_commit_points(&model->domain);
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      if (p->position[1][i] > (low + high) / 2) force -= p->volume[i] * p->internal[1][i];
+      if (p->position[1][i] > (low + high) / 2) force -= p->volume[i] * p->internal.row[1][i];
     }
     work += opening * (force + last) / 2;
     last = force;

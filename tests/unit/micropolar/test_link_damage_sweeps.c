@@ -60,11 +60,11 @@ static void damaged_bodies_keep_their_momenta(void **state)
         const int32_t i = p->place_of[n];
         double y[3], f[3], moment[3] = {0}, arm[3];
         for (int k = 0; k < 3; ++k) {
-          y[k] = p->position[k][i] + p->displacement[k][i];
-          f[k] = p->volume[i] * p->internal[k][i];
-          if (p->motions == 6) moment[k] = p->volume[i] * p->internal[ROTATION + k][i];
+          y[k] = p->position[k][i] + p->displacement.row[k][i];
+          f[k] = p->volume[i] * p->internal.row[k][i];
+          if (p->space.rows == 6) moment[k] = p->volume[i] * p->internal.row[p->space.rotation + k][i];
         }
-        if (p->motions == 4) moment[2] = p->volume[i] * p->internal[ROTATION][i];
+        if (p->space.rows == 4) moment[2] = p->volume[i] * p->internal.row[p->space.rotation][i];
         vector_cross(y, f, arm);
         for (int k = 0; k < 3; ++k) {
           sum[k] += f[k];
@@ -105,7 +105,8 @@ static void write_cloud(const char *name, const int n[3], double spacing)
 /** A sweep over all slices at the displacements held. @param[in] at  of linearised steps; NULL: none */
 static Sweep whole_sweep(const Particles *p, double *const *at)
 {
-  return (Sweep){.last = p->slices, .displacement = p->displacement, .linearised_at = at, .internal = p->internal};
+  return (Sweep){
+      .last = p->slices, .displacement = p->displacement.row, .linearised_at = at, .internal = p->internal.row};
 }
 
 /** Changes along a motion at the displacements held, by sweeps and link by link. */
@@ -113,37 +114,36 @@ static void check_changes(const breccia_model *model)
 {
   const Particles *p = model->domain.particles;
   const Micropolar *m = formulation_of(model);
-  double *at[MOTIONS] = {NULL}, *swept[MOTIONS] = {NULL}, largest[2] = {0};
+  Vector at = {0}, swept = {0};
+  double largest[2] = {0};
   uint64_t seed = 8;
-  for (int k = 0; k < p->motions; ++k) {
-    at[k] = places_array(p->places, "test", NULL);
-    swept[k] = places_array(p->places, "test", NULL);
+  assert_true(vector_create(&at, &p->space, "test", NULL) && vector_create(&swept, &p->space, "test", NULL));
+  for (int k = 0; k < p->space.rows; ++k) {
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      at[k][i] = p->displacement[k][i];
-      p->displacement[k][i] = (k < ROTATION ? 0.1 : 1) * (random_uniform(&seed) - 0.5);
-      if (k < ROTATION && k >= model->domain.body.dimensions) p->displacement[k][i] = 0;
+      at.row[k][i] = p->displacement.row[k][i];
+      p->displacement.row[k][i] = (k < p->space.rotation ? 0.1 : 1) * (random_uniform(&seed) - 0.5);
+      if (k < p->space.rotation && k >= model->domain.body.dimensions) p->displacement.row[k][i] = 0;
     }
   }
-  const Sweep sweep = whole_sweep(p, at);
+  const Sweep sweep = whole_sweep(p, at.row);
   if (m->sweeps->show_spins) m->sweeps->show_spins(m, &sweep);
   for (int64_t slice = 0; slice < p->slices; ++slice) {
     m->sweeps->resist_changes(m, &sweep, slice);
-    for (int k = 0; k < p->motions; ++k)
-      memcpy(swept[k] + slice * SLICE, p->internal[k] + slice * SLICE, SLICE * sizeof(double));
+    for (int k = 0; k < p->space.rows; ++k)
+      memcpy(swept.row[k] + slice * SLICE, p->internal.row[k] + slice * SLICE, SLICE * sizeof(double));
     micropolar_resist_changes_one_by_one(m, &sweep, slice, false);
   }
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) largest[k >= ROTATION] = fmax(largest[k >= ROTATION], fabs(swept[k][i]));
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t i = 0; i < p->places; ++i)
-      assert_near((swept[k][i] - p->internal[k][i]) / largest[k >= ROTATION], 0, 1e-10);
+      largest[k >= p->space.rotation] = fmax(largest[k >= p->space.rotation], fabs(swept.row[k][i]));
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      assert_near((swept.row[k][i] - p->internal.row[k][i]) / largest[k >= p->space.rotation], 0, 1e-10);
   assert_true(largest[0] > 0 && largest[1] > 0);
-  for (int k = 0; k < p->motions; ++k) {
-    memcpy(p->displacement[k], at[k], sizeof(double) * (size_t)p->places);
-    places_free(&at[k]);
-    places_free(&swept[k]);
-  }
+  vector_copy(&p->displacement, &at);
+  vector_destroy(&at);
+  vector_destroy(&swept);
 }
 
 /** Finds forces of all slices by sweeps once more. Which slots they went through, and that what was damaged counted. */
@@ -202,7 +202,7 @@ static void sweeps_are_sums_of_damaged_links(void **state)
                  : "");
       const Particles *p = model->domain.particles;
       const Micropolar *m = formulation_of(model);
-      const bool space = p->motions == 6;
+      const bool space = p->space.rows == 6;
       uint64_t seed = 7;
       for (int64_t i = 0; i < p->places && shrunk; ++i) p->free_strain[i] = -2e-4 * random_uniform(&seed);
       disturb(model, 1e-3, 5);
@@ -210,7 +210,7 @@ static void sweeps_are_sums_of_damaged_links(void **state)
       domain_commit_points(&model->domain);
       disturb(model, 5e-4, 6); /* some that were torn have closed */
       for (int64_t i = 0; i < p->places; ++i)
-        for (int k = ROTATION; k < p->motions; ++k) p->displacement[k][i] *= cases[c].turn / 5e-4;
+        for (int k = p->space.rotation; k < p->space.rows; ++k) p->displacement.row[k][i] *= cases[c].turn / 5e-4;
       for (int64_t n = 0; n < p->count && space; n += 3) /* the same rotation, told otherwise */
         for (int k = 0; k < 4; ++k) p->orientation[k][p->place_of[n]] *= -1;
       compute_forces(model);
@@ -220,27 +220,27 @@ static void sweeps_are_sums_of_damaged_links(void **state)
       assert_int_equal(ways.weak, p->slices);
       assert_int_equal(ways.stored > 0, cloud || joined);
       assert_int_equal(ways.along_rows > 0, !cloud);
-      double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
+      double most[2] = {0}, *swept = calloc((size_t)(p->space.rows * p->places), sizeof(double));
       int closed = 0;
       const Sweep sweep = whole_sweep(p, NULL);
-      for (int k = 0; k < p->motions; ++k) {
-        memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+      for (int k = 0; k < p->space.rows; ++k) {
+        memcpy(swept + k * p->places, p->internal.row[k], sizeof(double) * (size_t)p->places);
         for (int64_t i = 0; i < p->places; ++i)
-          most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
+          most[k >= p->space.rotation] = fmax(most[k >= p->space.rotation], fabs(p->internal.row[k][i]));
       }
       for (int64_t slice = 0; slice < p->slices; ++slice) {
         micropolar_resist_one_by_one(m, &sweep, slice, false);
         for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
           for (int lane = 0; lane < SLICE; ++lane)
             if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0)
-              closed += micropolar_link(m, p->displacement, slice, slot, lane).stretch < 0;
+              closed += micropolar_link(m, p->displacement.row, slice, slot, lane).stretch < 0;
       }
       assert_true(closed > 10);
-      for (int k = 0; k < p->motions; ++k)
+      for (int k = 0; k < p->space.rows; ++k)
         for (int64_t i = 0; i < p->places; ++i)
-          assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-11);
+          assert_near((swept[k * p->places + i] - p->internal.row[k][i]) / most[k >= p->space.rotation], 0, 1e-11);
       for (int64_t n = 0; n < p->count; ++n) /* no forces are found there */
-        p->displacement[ROTATION][p->place_of[n]] += 0.02 * random_uniform(&seed);
+        p->displacement.row[p->space.rotation][p->place_of[n]] += 0.02 * random_uniform(&seed);
       double energies[2] = {0, domain_stored_energy(&model->domain)}; /* place by place, and by sweeps */
       for (int64_t n = 0; n < p->count; ++n) {
         StoredEnergy stored;
@@ -281,13 +281,13 @@ static void links_are_damaged_beside_other_formulations(void **state)
     const Micropolar *m = formulation_of(model);
     disturb(model, 1e-3, 5);
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = ROTATION; k < p->motions; ++k)
-        if (!particles_turn(p, p->place_of[n])) p->displacement[k][p->place_of[n]] = 0;
+      for (int k = p->space.rotation; k < p->space.rows; ++k)
+        if (!particles_turn(p, p->place_of[n])) p->displacement.row[k][p->place_of[n]] = 0;
     compute_forces(model);
     double sum[3] = {0}, size = 0, largest[2] = {0}, off[2] = {0}, energy = 0, missed = 0;
     for (int64_t n = 0; n < p->count; ++n)
       for (int k = 0; k < 3; ++k) {
-        const double force = p->volume[p->place_of[n]] * p->internal[k][p->place_of[n]];
+        const double force = p->volume[p->place_of[n]] * p->internal.row[k][p->place_of[n]];
         sum[k] += force;
         size += fabs(force);
       }
@@ -296,16 +296,16 @@ static void links_are_damaged_beside_other_formulations(void **state)
     const Sweep sweep = whole_sweep(p, NULL);
     for (int64_t slice = 0; slice < p->slices; ++slice) {
       if (m->foreign[slice]) continue;
-      double swept[MOTIONS][SLICE], energies[SLICE];
+      double swept[MAX_ROWS][SLICE], energies[SLICE];
       m->sweeps->resist(m, &sweep, slice);
       micropolar_resist_one_by_one(m, &sweep, slice, true);
-      for (int k = 0; k < p->motions; ++k) memcpy(swept[k], p->internal[k] + slice * SLICE, sizeof swept[k]);
+      for (int k = 0; k < p->space.rows; ++k) memcpy(swept[k], p->internal.row[k] + slice * SLICE, sizeof swept[k]);
       micropolar_resist_one_by_one(m, &sweep, slice, false);
-      for (int k = 0; k < p->motions; ++k)
+      for (int k = 0; k < p->space.rows; ++k)
         for (int lane = 0; lane < SLICE; ++lane) {
-          const double there = p->internal[k][slice * SLICE + lane];
-          largest[k >= ROTATION] = larger_of(largest[k >= ROTATION], fabs(there));
-          off[k >= ROTATION] = larger_of(off[k >= ROTATION], fabs(swept[k][lane] - there));
+          const double there = p->internal.row[k][slice * SLICE + lane];
+          largest[k >= p->space.rotation] = larger_of(largest[k >= p->space.rotation], fabs(there));
+          off[k >= p->space.rotation] = larger_of(off[k >= p->space.rotation], fabs(swept[k][lane] - there));
         }
       model->domain.regions[0].type->stored_energies(m, slice, energies);
       for (int lane = 0; lane < SLICE; ++lane) {
@@ -315,7 +315,7 @@ static void links_are_damaged_beside_other_formulations(void **state)
         missed = larger_of(missed, fabs(energies[lane] - stored.stored));
         for (int64_t slot = m->family->stored[slice]; slot < m->family->first[slice + 1]; ++slot)
           if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0) {
-            const Link weak = micropolar_link(m, p->displacement, slice, slot, lane);
+            const Link weak = micropolar_link(m, p->displacement.row, slice, slot, lane);
             const LinkStiffness whole = micropolar_stiffness(m, slice * SLICE + lane, &weak.bond);
             if (!weak.alone) continue;
             ++across;
@@ -356,7 +356,7 @@ static void a_lattice_tears_beside_an_elastic_half(void **state)
   assert_true(e.stored < 1e-3 * e.dissipated);
   const Particles *p = model->domain.particles;
   for (int64_t n = 0; n < p->count; ++n)
-    if (p->position[0][p->place_of[n]] > 1) assert_near(p->displacement[0][p->place_of[n]] / 5e-4, 1, 0.01);
+    if (p->position[0][p->place_of[n]] > 1) assert_near(p->displacement.row[0][p->place_of[n]] / 5e-4, 1, 0.01);
   assert_balanced(model, 1e-3);
   breccia_model_destroy(&model);
 }

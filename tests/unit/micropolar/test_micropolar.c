@@ -65,25 +65,25 @@ static void turn_body(breccia_model *model, const double axis[3], double angle)
     const int32_t i = p->place_of[n];
     double y[3], along = 0;
     for (int k = 0; k < 3; ++k) {
-      y[k] = p->position[k][i] + p->displacement[k][i];
+      y[k] = p->position[k][i] + p->displacement.row[k][i];
       along += axis[k] * y[k];
     }
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
       const double turned = c * y[k] + s * (axis[a] * y[b] - axis[b] * y[a]) + (1 - c) * along * axis[k];
-      p->displacement[k][i] = turned - p->position[k][i];
+      p->displacement.row[k][i] = turned - p->position[k][i];
     }
-    if (p->motions == 4) {
-      p->displacement[ROTATION][i] += angle;
+    if (p->space.rows == 4) {
+      p->displacement.row[p->space.rotation][i] += angle;
       continue;
     }
     double o[4];
-    particles_orientation(p, p->displacement, i, o);
+    particles_orientation(p, p->displacement.row, i, o);
     p->orientation[0][i] = q[0] * o[0] - q[1] * o[1] - q[2] * o[2] - q[3] * o[3];
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
       p->orientation[1 + k][i] = q[0] * o[1 + k] + q[1 + k] * o[0] + q[1 + a] * o[1 + b] - q[1 + b] * o[1 + a];
-      p->displacement[ROTATION + k][i] = 0;
+      p->displacement.row[p->space.rotation + k][i] = 0;
     }
   }
 }
@@ -93,10 +93,10 @@ static void disturb(const breccia_model *model, double size, double angle, uint6
 {
   const Particles *p = model->domain.particles;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < p->motions; ++k)
-      if (k >= ROTATION || k < model->domain.body.dimensions)
-        p->displacement[k][p->place_of[n]] =
-            2 * (random_uniform(&seed) - 0.5) * (k < ROTATION ? size * spacing : angle);
+    for (int k = 0; k < p->space.rows; ++k)
+      if (k >= p->space.rotation || k < model->domain.body.dimensions)
+        p->displacement.row[k][p->place_of[n]] =
+            2 * (random_uniform(&seed) - 0.5) * (k < p->space.rotation ? size * spacing : angle);
 }
 
 /* ---- constants ---- */
@@ -153,9 +153,9 @@ static double energy_ratio(breccia_model *model, const double e[9], double strai
   deform_uniformly(model, f);
   for (int64_t n = 0; n < p->count; ++n) { /* particles turn as the body does */
     const int32_t i = p->place_of[n];
-    if (plane) p->displacement[ROTATION][i] = strain * (e[3] - e[1]) / 2;
+    if (plane) p->displacement.row[p->space.rotation][i] = strain * (e[3] - e[1]) / 2;
     for (int k = 0; k < 3 && !plane; ++k)
-      p->displacement[ROTATION + k][i] =
+      p->displacement.row[p->space.rotation + k][i] =
           strain * (e[3 * ((k + 2) % 3) + (k + 1) % 3] - e[3 * ((k + 1) % 3) + (k + 2) % 3]) / 2;
   }
   for (int a = 0; a < 3; ++a) {
@@ -266,7 +266,7 @@ static void a_link_is_a_beam(void **state)
     const int32_t a = p->place_of[0], b = p->place_of[1];
     const double v = p->volume[a], ea = of->axial * v * v, ei = of->bending * v * v, gj = of->twist * v * v;
     const double small = 1e-6, l = spacing;
-    const int turn = space ? ROTATION + 2 : ROTATION;
+    const int turn = space ? p->space.rotation + 2 : p->space.rotation;
     assert_int_equal(p->count, 2);
     if (space) assert_near(gj / (ei * 2 / 2.4), 1, 1e-12); /* J = 2 I, G = E / 2.4 */
     const struct {
@@ -277,22 +277,22 @@ static void a_link_is_a_beam(void **state)
                 {1, turn, {0, 6 * ei / (l * l)}, {-2 * ei / l, -4 * ei / l}},
                 {0, turn, {0, 6 * ei / (l * l)}, {-4 * ei / l, -2 * ei / l}}};
     for (size_t w = 0; w < sizeof ways / sizeof *ways; ++w) {
-      double *moved = &p->displacement[ways[w].row][ways[w].end ? b : a];
+      double *moved = &p->displacement.row[ways[w].row][ways[w].end ? b : a];
       *moved = small;
       compute_forces(model);
       const double slack = 1e-5 * small * ea / l;
       for (int k = 0; k < 2; ++k) {
-        assert_near(v * p->internal[k][b], small * ways[w].force[k], slack);
-        assert_near(v * p->internal[k][a], -small * ways[w].force[k], slack);
-        assert_near(v * p->internal[turn][k ? b : a], small * ways[w].moment[k], slack * l);
+        assert_near(v * p->internal.row[k][b], small * ways[w].force[k], slack);
+        assert_near(v * p->internal.row[k][a], -small * ways[w].force[k], slack);
+        assert_near(v * p->internal.row[turn][k ? b : a], small * ways[w].moment[k], slack * l);
       }
       *moved = 0;
     }
     if (space) {
-      p->displacement[ROTATION][b] = small;
+      p->displacement.row[p->space.rotation][b] = small;
       compute_forces(model);
-      assert_near(v * p->internal[ROTATION][b] / small, -gj / l, 1e-6 * gj / l);
-      assert_near(v * p->internal[ROTATION][a] / small, gj / l, 1e-6 * gj / l);
+      assert_near(v * p->internal.row[p->space.rotation][b] / small, -gj / l, 1e-6 * gj / l);
+      assert_near(v * p->internal.row[p->space.rotation][a] / small, gj / l, 1e-6 * gj / l);
     }
     breccia_model_destroy(&model);
   }
@@ -317,22 +317,22 @@ static void forces_are_derivatives_of_the_energy(void **state)
       turn_body(model, *cases[c].space == 'p' ? (double[]){0, 0, 1} : (double[]){0.6, 0, 0.8}, 0.7);
       compute_forces(model);
       double most[2] = {0}, sum[3] = {0};
-      for (int k = 0; k < p->motions; ++k)
+      for (int k = 0; k < p->space.rows; ++k)
         for (int64_t i = 0; i < p->places; ++i)
-          most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->volume[i] * p->internal[k][i]));
+          most[k >= p->space.rotation] = fmax(most[k >= p->space.rotation], fabs(p->volume[i] * p->internal.row[k][i]));
       for (int64_t n = 0; n < p->count; n += 7)
-        for (int k = 0; k < p->motions; ++k) {
-          if (k < ROTATION && k >= model->domain.body.dimensions) continue;
+        for (int k = 0; k < p->space.rows; ++k) {
+          if (k < p->space.rotation && k >= model->domain.body.dimensions) continue;
           const int32_t i = p->place_of[n];
-          const double h = 1e-6 * (k < ROTATION ? spacing : 1), at = p->displacement[k][i];
-          p->displacement[k][i] = at + h;
+          const double h = 1e-6 * (k < p->space.rotation ? spacing : 1), at = p->displacement.row[k][i];
+          p->displacement.row[k][i] = at + h;
           const double above = all_stored(model);
-          p->displacement[k][i] = at - h;
+          p->displacement.row[k][i] = at - h;
           const double slope = (above - all_stored(model)) / (2 * h);
-          p->displacement[k][i] = at;
-          if (!(fabs(slope + p->volume[i] * p->internal[k][i]) < 2e-6 * most[k >= ROTATION]))
+          p->displacement.row[k][i] = at;
+          if (!(fabs(slope + p->volume[i] * p->internal.row[k][i]) < 2e-6 * most[k >= p->space.rotation]))
             fail_msg("%s, size %d, row %d: %g, by energy %g, of %g", cases[c].lattice, size, k,
-                     p->volume[i] * p->internal[k][i], -slope, most[k >= ROTATION]);
+                     p->volume[i] * p->internal.row[k][i], -slope, most[k >= p->space.rotation]);
         }
       for (int k = 0; k < 3; ++k) { /* nothing turns or pulls the whole */
         double force = 0;
@@ -340,10 +340,11 @@ static void forces_are_derivatives_of_the_energy(void **state)
         for (int64_t n = 0; n < p->count; ++n) {
           const int32_t i = p->place_of[n];
           const double v = p->volume[i];
-          force += v * p->internal[k][i];
-          sum[k] += v * ((p->position[x][i] + p->displacement[x][i]) * p->internal[y][i] -
-                         (p->position[y][i] + p->displacement[y][i]) * p->internal[x][i]);
-          if (p->motions == 6 || k == 2) sum[k] += v * p->internal[p->motions == 6 ? ROTATION + k : ROTATION][i];
+          force += v * p->internal.row[k][i];
+          sum[k] += v * ((p->position[x][i] + p->displacement.row[x][i]) * p->internal.row[y][i] -
+                         (p->position[y][i] + p->displacement.row[y][i]) * p->internal.row[x][i]);
+          if (p->space.rows == 6 || k == 2)
+            sum[k] += v * p->internal.row[p->space.rows == 6 ? p->space.rotation + k : p->space.rotation][i];
         }
         assert_near(force / most[0], 0, 1e-12);
         assert_near(sum[k] / (most[0] * spacing), 0, 1e-11);
@@ -379,11 +380,12 @@ static void links_between_two_materials_neither_push_nor_turn(void **state)
       for (int k = 0; k < 3; ++k) {
         const int x = (k + 1) % 3, y = (k + 2) % 3;
         const double v = p->volume[i];
-        force[k] += v * p->internal[k][i];
-        sum[k] += v * ((p->position[x][i] + p->displacement[x][i]) * p->internal[y][i] -
-                       (p->position[y][i] + p->displacement[y][i]) * p->internal[x][i]);
-        if (p->motions == 6 || k == 2) sum[k] += v * p->internal[p->motions == 6 ? ROTATION + k : ROTATION][i];
-        most = larger_of(most, fabs(v * p->internal[k][i]));
+        force[k] += v * p->internal.row[k][i];
+        sum[k] += v * ((p->position[x][i] + p->displacement.row[x][i]) * p->internal.row[y][i] -
+                       (p->position[y][i] + p->displacement.row[y][i]) * p->internal.row[x][i]);
+        if (p->space.rows == 6 || k == 2)
+          sum[k] += v * p->internal.row[p->space.rows == 6 ? p->space.rotation + k : p->space.rotation][i];
+        most = larger_of(most, fabs(v * p->internal.row[k][i]));
       }
     }
     for (int k = 0; k < 3; ++k) {
@@ -407,22 +409,20 @@ static void rotation_of_the_whole_changes_nothing(void **state)
       if (bent) disturb(model, 1e-3, 1e-2, 11);
       compute_forces(model);
       const double energy = all_stored(model), scale = young * spacing * spacing * spacing;
-      double *force[MOTIONS];
-      for (int k = 0; k < p->motions; ++k) {
-        force[k] = places_array(p->places, "test", NULL);
-        memcpy(force[k], p->internal[k], sizeof(double) * (size_t)p->places);
-      }
+      Vector force = {0};
+      assert_true(vector_create(&force, &p->space, "test", NULL));
+      vector_copy(&force, &p->internal);
       for (int turn = 1; turn <= 8; ++turn) {
         turn_body(model, axes[space], acos(-1) / 4);
         compute_forces(model);
         assert_near(all_stored(model) / scale, energy / scale, 1e-13);
         if (turn < 8) continue;
-        for (int k = 0; k < p->motions; ++k)
+        for (int k = 0; k < p->space.rows; ++k)
           for (int64_t i = 0; i < p->places; ++i)
-            assert_near(p->internal[k][i] * p->volume[i] / scale * spacing,
-                        force[k][i] * p->volume[i] / scale * spacing, 1e-11);
+            assert_near(p->internal.row[k][i] * p->volume[i] / scale * spacing,
+                        force.row[k][i] * p->volume[i] / scale * spacing, 1e-11);
       }
-      for (int k = 0; k < p->motions; ++k) places_free(&force[k]);
+      vector_destroy(&force);
       breccia_model_destroy(&model);
     }
 }
@@ -441,7 +441,7 @@ static void links_of_the_thesis_resist_rotation(void **state)
       most[secant][k] = 0;
       for (int row = 0; row < 2; ++row)
         for (int64_t i = 0; i < p->places; ++i)
-          most[secant][k] = larger_of(most[secant][k], fabs(p->internal[row][i] * p->volume[i]));
+          most[secant][k] = larger_of(most[secant][k], fabs(p->internal.row[row][i] * p->volume[i]));
       breccia_model_destroy(&model);
     }
   /* At one degree as much as a stretch of 1.5e-4, twice what cracks concrete; four times as much at two. */
@@ -476,7 +476,7 @@ static void a_row_of_links_bends_like_a_beam(void **state)
       step_surely(model, 100000);
       double rotation[3];
       particles_rotation(p, tip, rotation);
-      assert_near(p->displacement[1][tip] / (f * (moment ? l * l / 2 : l * l * l / 3) / ei), 1, 1e-5);
+      assert_near(p->displacement.row[1][tip] / (f * (moment ? l * l / 2 : l * l * l / 3) / ei), 1, 1e-5);
       assert_near(rotation[2] / (f * (moment ? l : l * l / 2) / ei), 1, 1e-5);
       assert_balanced(model, 1e-3);
       breccia_model_destroy(&model);
@@ -487,10 +487,10 @@ static void a_row_of_links_bends_like_a_beam(void **state)
 static double moving(const Particles *p)
 {
   double sum = 0;
-  for (int k = 0; k < p->motions; ++k)
+  for (int k = 0; k < p->space.rows; ++k)
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      sum += 0.5 * p->inertia[k][i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+      sum += 0.5 * p->inertia.row[k][i] * p->volume[i] * p->velocity.row[k][i] * p->velocity.row[k][i];
     }
   return sum;
 }
@@ -523,8 +523,8 @@ static void free_bodies_keep_energy_and_momentum(void **state)
     assert_balanced(model, 1e-4);
     double length = 0; /* it has turned by more than a few turns, and is of one piece */
     for (int k = 0; k < 3; ++k)
-      length += pow(p->position[k][p->place_of[0]] + p->displacement[k][p->place_of[0]] -
-                        p->position[k][p->place_of[1]] - p->displacement[k][p->place_of[1]],
+      length += pow(p->position[k][p->place_of[0]] + p->displacement.row[k][p->place_of[0]] -
+                        p->position[k][p->place_of[1]] - p->displacement.row[k][p->place_of[1]],
                     2);
     assert_near(sqrt(length) / spacing, 1, 0.05);
     assert_true(breccia_model_time(model) * 12 > 10);
@@ -563,9 +563,9 @@ static void steps_are_the_same_again_and_for_any_number_of_threads(void **state)
       if (!turn) step_surely(model, 60);
       assert_int_equal(breccia_model_steps_done(model), 120);
       assert_true(breccia_model_broken_bonds(model) > 5);
-      for (int k = 0; k < p->motions; ++k) {
-        assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
-        assert_memory_equal(p->velocity[k], q->velocity[k], sizeof(double) * (size_t)p->places);
+      for (int k = 0; k < p->space.rows; ++k) {
+        assert_memory_equal(p->displacement.row[k], q->displacement.row[k], sizeof(double) * (size_t)p->places);
+        assert_memory_equal(p->velocity.row[k], q->velocity.row[k], sizeof(double) * (size_t)p->places);
       }
       for (int k = 0; k < 4 && space; ++k)
         assert_memory_equal(p->orientation[k], q->orientation[k], sizeof(double) * (size_t)p->places);
@@ -592,9 +592,9 @@ static void bodies_without_rotations_have_none(void **state)
       model_of(SOFT_SOLID "body: {b: {material: m, spacing: 1, shape: {box: {particles: [4, 4, 4]}}}}\n"
                           "solve: {explicit: {steps: 1}}\n");
   const Particles *p = model->domain.particles;
-  assert_int_equal(p->motions, 3);
-  for (int k = ROTATION; k < MOTIONS; ++k)
-    assert_true(!p->displacement[k] && !p->velocity[k] && !p->internal[k] && !p->external[k]);
+  assert_int_equal(p->space.rows, 3);
+  for (int k = p->space.rotation; k < MAX_ROWS; ++k)
+    assert_true(!p->displacement.row[k] && !p->velocity.row[k] && !p->internal.row[k] && !p->external.row[k]);
   assert_true(!p->rotary && !p->orientation[0]);
   breccia_model_destroy(&model);
   char *words =

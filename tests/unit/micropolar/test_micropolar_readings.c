@@ -87,10 +87,10 @@ static void what_links_receive_is_the_work_on_them(void **state)
     uint64_t seed = 5;
     double power = 0, stored = 0, received = 0;
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < p->motions; ++k) {
-        if (k < ROTATION && k >= model->domain.body.dimensions) continue;
-        p->displacement[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * 1e-3 * random_uniform(&seed);
-        p->velocity[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * random_uniform(&seed);
+      for (int k = 0; k < p->space.rows; ++k) {
+        if (k < p->space.rotation && k >= model->domain.body.dimensions) continue;
+        p->displacement.row[k][p->place_of[n]] = (k < p->space.rotation ? spacing : 1) * 1e-3 * random_uniform(&seed);
+        p->velocity.row[k][p->place_of[n]] = (k < p->space.rotation ? spacing : 1) * random_uniform(&seed);
       }
     compute_forces(model);
     for (int64_t n = 0; n < p->count; ++n) {
@@ -99,7 +99,7 @@ static void what_links_receive_is_the_work_on_them(void **state)
       region->type->stored_energy(region->formulation, i, step, &energy);
       stored += energy.stored;
       received += energy.received;
-      for (int k = 0; k < p->motions; ++k) power -= p->volume[i] * p->internal[k][i] * p->velocity[k][i];
+      for (int k = 0; k < p->space.rows; ++k) power -= p->volume[i] * p->internal.row[k][i] * p->velocity.row[k][i];
     }
     assert_true(stored > 0 && fabs(power * step) > 1e-6 * stored);
     assert_near((stored - received) / (step * power / 2), 1, 1e-9);
@@ -118,19 +118,20 @@ static void halves_of_links_add_up_to_forces(void **state)
     const Region *region = &model->domain.regions[0];
     uint64_t seed = 9;
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < p->motions; ++k)
-        if (k >= ROTATION || k < model->domain.body.dimensions)
-          p->displacement[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * 1e-3 * random_uniform(&seed);
+      for (int k = 0; k < p->space.rows; ++k)
+        if (k >= p->space.rotation || k < model->domain.body.dimensions)
+          p->displacement.row[k][p->place_of[n]] = (k < p->space.rotation ? spacing : 1) * 1e-3 * random_uniform(&seed);
     compute_forces(model);
     const int32_t place = inner_place(model);
     double sum[3] = {0}, half[3];
     for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
       if (!(f->intact[slot] >> place % SLICE & 1)) continue;
       const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
-      region->type->half_state(region->formulation, p->displacement, NULL, place / SLICE, slot, place % SLICE, half);
+      region->type->half_state(region->formulation, p->displacement.row, NULL, place / SLICE, slot, place % SLICE,
+                               half);
       for (int k = 0; k < 3; ++k) sum[k] += 2 * half[k] * p->volume[bond.neighbour];
     }
-    for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal[k][place], 1, 1e-9);
+    for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal.row[k][place], 1, 1e-9);
     breccia_model_destroy(&model);
   }
 }
@@ -146,25 +147,27 @@ static void halves_of_changes_add_up_to_the_change(void **state)
     const Region *region = &model->domain.regions[0];
     const int32_t place = inner_place(model);
     uint64_t seed = 21;
-    double *at[MOTIONS] = {NULL}, sum[3] = {0}, half[3];
-    for (int k = 0; k < p->motions; ++k) {
-      at[k] = places_array(p->places, "test", NULL);
+    Vector at = {0};
+    double sum[3] = {0}, half[3];
+    assert_true(vector_create(&at, &p->space, "test", NULL));
+    for (int k = 0; k < p->space.rows; ++k) {
       for (int64_t n = 0; n < p->count; ++n) {
-        if (k < ROTATION && k >= model->domain.body.dimensions) continue;
-        at[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * 1e-2 * random_uniform(&seed);
-        p->displacement[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * random_uniform(&seed);
+        if (k < p->space.rotation && k >= model->domain.body.dimensions) continue;
+        at.row[k][p->place_of[n]] = (k < p->space.rotation ? spacing : 1) * 1e-2 * random_uniform(&seed);
+        p->displacement.row[k][p->place_of[n]] = (k < p->space.rotation ? spacing : 1) * random_uniform(&seed);
       }
     }
-    const Sweep sweep = {.displacement = p->displacement, .linearised_at = at, .internal = p->internal};
+    const Sweep sweep = {.displacement = p->displacement.row, .linearised_at = at.row, .internal = p->internal.row};
     micropolar_resist_changes_one_by_one(region->formulation, &sweep, place / SLICE, false);
     for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
       if (!(f->intact[slot] >> place % SLICE & 1)) continue;
       const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
-      region->type->half_state(region->formulation, p->displacement, at, place / SLICE, slot, place % SLICE, half);
+      region->type->half_state(region->formulation, p->displacement.row, at.row, place / SLICE, slot, place % SLICE,
+                               half);
       for (int k = 0; k < 3; ++k) sum[k] += 2 * half[k] * p->volume[bond.neighbour];
     }
-    for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal[k][place], 1, 1e-9);
-    for (int k = 0; k < p->motions; ++k) places_free(&at[k]);
+    for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal.row[k][place], 1, 1e-9);
+    vector_destroy(&at);
     breccia_model_destroy(&model);
   }
 }

@@ -84,7 +84,7 @@ static void a_row_of_links_at_rest_is_a_beam(void **state)
         rotation_of(model, tip, rotation);
         const double wanted[3] = {l * l * l / 3, l * l / 2, 0}, turned[3] = {l * l / 2, l, l};
         const double ei = load == 2 ? links.twist : links.bending;
-        if (load < 2) assert_near(p->displacement[1][tip] / (f * wanted[load] / ei), 1, 1e-6);
+        if (load < 2) assert_near(p->displacement.row[1][tip] / (f * wanted[load] / ei), 1, 1e-6);
         assert_near(rotation[load == 2 ? 0 : 2] / (f * turned[load] / ei), 1, 1e-6);
         assert_balanced(model, 1e-6);
         assert_true(model->solver.clock.time == 1);
@@ -114,8 +114,8 @@ static void a_row_of_links_is_rolled_into_a_circle(void **state)
       output_field_find("rotation")->value(&model->domain, i, told); /* in degrees; in space half a turn at most */
       if (n != 5)                                                    /* half a turn either way */
         assert_near(told[2], space && n >= 6 ? 30 * (n + 1) - 360 : 30 * (n + 1), 1e-4);
-      assert_near(p->position[0][i] + p->displacement[0][i] - p->position[0][first], x, 1e-7);
-      assert_near(p->displacement[1][i], y, 1e-7);
+      assert_near(p->position[0][i] + p->displacement.row[0][i] - p->position[0][first], x, 1e-7);
+      assert_near(p->displacement.row[1][i], y, 1e-7);
       rotation_of(model, i, rotation);
       assert_near(sin(rotation[2] - turn * (n + 1)), 0, 1e-6);
       assert_near(cos(rotation[2] - turn * (n + 1)), 1, 1e-6);
@@ -149,7 +149,7 @@ static double tip_of(const breccia_model *model)
   for (int64_t n = 0; n < p->count; ++n) farthest = larger_of(farthest, p->position[0][p->place_of[n]]);
   for (int64_t n = 0; n < p->count; ++n)
     if (p->position[0][p->place_of[n]] > farthest - 1e-6) {
-      sum += p->displacement[1][p->place_of[n]];
+      sum += p->displacement.row[1][p->place_of[n]];
       ++count;
     }
   return sum / (double)count;
@@ -201,7 +201,7 @@ static void explicit_steps_come_to_the_rest_that_statics_find(void **state)
     double rotation[3];
     step_surely(model, way ? 200000 : INT64_MAX);
     rotation_of(model, last_of(model), rotation);
-    found[way] = model->domain.particles->displacement[1][last_of(model)];
+    found[way] = model->domain.particles->displacement.row[1][last_of(model)];
     turned[way] = rotation[2];
     breccia_model_destroy(&model);
   }
@@ -318,8 +318,8 @@ static void steps_are_the_same_again_and_for_any_number_of_threads(void **state)
       step_surely(other, 12);
       if (breccia_model_broken_bonds(model) < 3)
         fail_msg("%d, %s: %lld bonds", space, solvers[s], (long long)breccia_model_broken_bonds(model));
-      for (int k = 0; k < p->motions; ++k)
-        assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
+      for (int k = 0; k < p->space.rows; ++k)
+        assert_memory_equal(p->displacement.row[k], q->displacement.row[k], sizeof(double) * (size_t)p->places);
       for (int k = 0; k < 4 && space; ++k)
         assert_memory_equal(p->orientation[k], q->orientation[k], sizeof(double) * (size_t)p->places);
       assert_balanced(model, 1e-2);
@@ -385,10 +385,10 @@ static void a_cantilever_vibrates_like_a_beam(void **state)
   assert_int_equal(modes.rigid, 3);
   for (int n = 0; n < 3; ++n) { /* every particle turns alike, by half of the curl of how it moves */
     const Particles *p = model->domain.particles;
-    double *const *u = modes.modes[n].displacement;
+    double *const *u = modes.modes[n].displacement.row;
     const int32_t a = p->place_of[0], b = p->place_of[11];
     const double turned = (u[1][b] - u[1][a]) / (p->position[0][b] - p->position[0][a]);
-    for (int64_t i = 0; i < p->count; ++i) assert_near(u[ROTATION][p->place_of[i]], turned, 1e-6);
+    for (int64_t i = 0; i < p->count; ++i) assert_near(u[p->space.rotation][p->place_of[i]], turned, 1e-6);
   }
   modes_destroy(&modes);
   breccia_model_destroy(&model);
@@ -442,10 +442,10 @@ static void a_cantilever_swings_at_its_first_frequency(void **state)
   modes_destroy(&modes);
   while (model->solver.clock.time < fmin(period, 7.9)) {
     step_surely(model, 1);
-    mean += p->displacement[1][tip];
+    mean += p->displacement.row[1][tip];
     ++steps;
-    if (p->displacement[1][tip] > most) {
-      most = p->displacement[1][tip];
+    if (p->displacement.row[1][tip] > most) {
+      most = p->displacement.row[1][tip];
       at = model->solver.clock.time;
     }
   }
@@ -485,7 +485,7 @@ static void stiffness_damps_what_turns(void **state)
       while (model->solver.clock.time < 3.9 * pi / w) {
         step_surely(model, 1);
         const int turn = model->solver.clock.time > 2 * pi / w;
-        most[turn] = larger_of(most[turn], p->displacement[1][tip] / still - 1);
+        most[turn] = larger_of(most[turn], p->displacement.row[1][tip] / still - 1);
       }
       const double decay = log(most[0] / most[1]) / (2 * pi * share / sqrt(1 - share * share));
       print_message("%s, %s: decay %.4f of what is wanted\n", space ? "space" : "plane", way ? "implicit" : "explicit",
@@ -516,7 +516,7 @@ static void a_turned_clamp_turns_the_body(void **state)
     const double turned[3] = {x * (c + (1 - c) * axis[0] * axis[0]), x * s * axis[2], x * (1 - c) * axis[0] * axis[2]};
     double rotation[3];
     for (int k = 0; k < 3; ++k)
-      assert_near(p->position[k][i] + p->displacement[k][i] - p->position[k][first], turned[k], 1e-8);
+      assert_near(p->position[k][i] + p->displacement.row[k][i] - p->position[k][first], turned[k], 1e-8);
     rotation_of(model, i, rotation);
     for (int k = 0; k < 3; ++k) assert_near(rotation[k], (angle - 2 * pi) * axis[k], 1e-7);
   }
@@ -549,7 +549,7 @@ static void pieces_that_fly_apart_go_on_for_ever(void **state)
     breccia_error_destroy(&error);
     assert_true(m->domain.broken_count > 0);
     for (int64_t n = 0; n < p->count; ++n)
-      for (int row = 0; row < p->motions; ++row) assert_float_equal(p->internal[row][p->place_of[n]], 0, 1e-6);
+      for (int row = 0; row < p->space.rows; ++row) assert_float_equal(p->internal.row[row][p->place_of[n]], 0, 1e-6);
     breccia_model_destroy(&m);
   }
 }

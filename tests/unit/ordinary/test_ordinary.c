@@ -20,12 +20,12 @@ static void two_points_and_a_cube_have_the_forces_of_another_program(void **stat
   const char *moduli = "bulk modulus: 130e9, shear modulus: 78e9";
   breccia_model *m = body_of(moduli, "horizon: 1.1", "spacing: 1, shape: {box: {particles: [2, 1, 1]}}");
   const Particles *p = m->domain.particles;
-  p->displacement[0][p->place_of[1]] = 1;
+  p->displacement.row[0][p->place_of[1]] = 1;
   compute_forces(m);
   assert_near(weighted_volume(m, p->place_of[0]), 1, 1e-14);
   assert_near(ordinary_of(m)->dilatation[p->place_of[0]], 3, 1e-13);
-  assert_near(p->internal[0][p->place_of[0]], 2.34e12, 1e-12 * 2.34e12);
-  assert_near(p->internal[0][p->place_of[1]], -2.34e12, 1e-12 * 2.34e12);
+  assert_near(p->internal.row[0][p->place_of[0]], 2.34e12, 1e-12 * 2.34e12);
+  assert_near(p->internal.row[0][p->place_of[1]], -2.34e12, 1e-12 * 2.34e12);
   breccia_model_destroy(&m);
 
   /* U2: a unit cube of eight points, z compressed to 0.98: A = 0, b = 9.75e10. */
@@ -49,7 +49,7 @@ static void two_points_and_a_cube_have_the_forces_of_another_program(void **stat
       for (int k = 0; k < 3 && other != n; ++k)
         force[k] += 2 * 9.75e10 * (sqrt(deformed) - sqrt(reference)) * y[k] / sqrt(deformed);
     }
-    for (int k = 0; k < 3; ++k) assert_near(p->internal[k][place], force[k], 1e-11 * 1e10);
+    for (int k = 0; k < 3; ++k) assert_near(p->internal.row[k][place], force[k], 1e-11 * 1e10);
   }
   breccia_model_destroy(&m);
 }
@@ -89,7 +89,7 @@ static void wiggle(const breccia_model *m, double size)
   uint64_t seed = 5;
   for (int32_t n = 0; n < p->count; ++n)
     for (int k = 0; k < m->domain.body.dimensions; ++k)
-      p->displacement[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
+      p->displacement.row[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
 }
 
 static void with_the_poisson_ratio_of_bonds_it_is_bond_based_inside(void **state)
@@ -120,7 +120,7 @@ static void with_the_poisson_ratio_of_bonds_it_is_bond_based_inside(void **state
       if (!is_inside(p, size, p->place_of[n], 6)) continue;
       ++inside;
       for (int c = 0; c < 3; ++c)
-        assert_near(p->internal[c][p->place_of[n]], q->internal[c][q->place_of[n]], 1e-12 * 50);
+        assert_near(p->internal.row[c][p->place_of[n]], q->internal.row[c][q->place_of[n]], 1e-12 * 50);
     }
     assert_true(inside > 20);
     breccia_model_destroy(&m);
@@ -183,7 +183,7 @@ static void uniform_strain_gives_hookes_stress_and_no_force_inside(void **state)
     compute_forces(m);
     double largest = 0;
     int inside = 0;
-    for (int32_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->internal[0][p->place_of[n]]));
+    for (int32_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->internal.row[0][p->place_of[n]]));
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t place = p->place_of[n];
       const double reach = d->family.horizon + 0.51;
@@ -199,7 +199,7 @@ static void uniform_strain_gives_hookes_stress_and_no_force_inside(void **state)
       assert_near(stored.stored / p->volume[place], energy, 1e-6 * energy);
       if (!is_inside(p, cases[c].size, place, 2 * reach)) continue;
       ++inside;
-      for (int k = 0; k < 3; ++k) assert_near(p->internal[k][place], 0, 1e-9 * largest);
+      for (int k = 0; k < 3; ++k) assert_near(p->internal.row[k][place], 0, 1e-9 * largest);
     }
     if (!inside) fail_msg("%s: no particle is inside", cases[c].block);
     breccia_model_destroy(&m);
@@ -242,17 +242,17 @@ static void rigid_rotation_makes_no_force_and_momenta_are_kept(void **state)
     deform_uniformly(m, turn);
     compute_forces(m);
     for (int32_t n = 0; n < p->count; ++n)
-      for (int a = 0; a < 3; ++a) assert_near(p->internal[a][p->place_of[n]], 0, 1e-12 * 150);
+      for (int a = 0; a < 3; ++a) assert_near(p->internal.row[a][p->place_of[n]], 0, 1e-12 * 150);
     wiggle(m, 0.2);
     compute_forces(m);
     double sum[3] = {0}, moment = 0, size = 0;
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
       double y[2];
-      for (int a = 0; a < 3; ++a) sum[a] += p->internal[a][i] * p->volume[i];
-      for (int a = 0; a < 2; ++a) y[a] = p->position[a][i] + p->displacement[a][i];
-      moment += (y[0] * p->internal[1][i] - y[1] * p->internal[0][i]) * p->volume[i];
-      size += fabs(p->internal[0][i] * p->volume[i]);
+      for (int a = 0; a < 3; ++a) sum[a] += p->internal.row[a][i] * p->volume[i];
+      for (int a = 0; a < 2; ++a) y[a] = p->position[a][i] + p->displacement.row[a][i];
+      moment += (y[0] * p->internal.row[1][i] - y[1] * p->internal.row[0][i]) * p->volume[i];
+      size += fabs(p->internal.row[0][i] * p->volume[i]);
     }
     for (int a = 0; a < 3; ++a) assert_near(sum[a], 0, 1e-13 * size);
     assert_near(moment, 0, 1e-12 * size);
@@ -354,7 +354,7 @@ static void check_tells_the_shear_modulus_of_the_lattice(void **state)
       const int32_t middle = particles_nearest(p, (double[]){4.5, 4.5, plane ? 0 : 4.5});
       double strain[6], stress[6], least = INFINITY, largest = 0;
       for (int way = 0; way < 2; ++way) { /* pure shear along the axes, and across their diagonals */
-        for (int k = 0; k < 3; ++k) memset(p->displacement[k], 0, sizeof(double) * (size_t)p->places);
+        for (int k = 0; k < 3; ++k) memset(p->displacement.row[k], 0, sizeof(double) * (size_t)p->places);
         deform_uniformly(m,
                          way ? (double[]){1 + s, 0, 0, 0, 1 - s, 0, 0, 0, 1} : (double[]){1, s, 0, s, 1, 0, 0, 0, 1});
         compute_forces(m);

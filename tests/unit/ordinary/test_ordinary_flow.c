@@ -13,11 +13,11 @@ static double pull_to(breccia_model *m, double u)
   Domain *d = &m->domain;
   const Particles *p = d->particles;
   const int32_t at = p->place_of[1], first = p->place_of[0];
-  p->displacement[0][at] = u;
+  p->displacement.row[0][at] = u;
   compute_forces(m);
   domain_commit_points(d);
-  const double along = p->internal[0][first] > 0 ? 1 : -1;
-  return along * hypot(p->internal[0][first], p->internal[1][first]);
+  const double along = p->internal.row[0][first] > 0 ? 1 : -1;
+  return along * hypot(p->internal.row[0][first], p->internal.row[1][first]);
 }
 
 static void two_points_yield_as_in_another_program(void **state)
@@ -66,24 +66,24 @@ static void two_points_relax_like_a_standard_linear_solid(void **state)
   const Particles *p = d->particles;
   const double whole = 2 * 15 * shear / moment * e;
   for (int32_t n = 0; n < 2; ++n) ordinary_of(m)->inverse[p->place_of[n]] = 1e-300;
-  p->displacement[0][p->place_of[1]] = e;
+  p->displacement.row[0][p->place_of[1]] = e;
   d->clock.time_step = 1e-12; /* at once */
   for (int k = 0; k <= 12; ++k) {
     compute_forces(m);
     domain_commit_points(d);
     const double wanted = whole * (1 - share + share * exp(-k * step / tau));
-    assert_near(p->internal[0][p->place_of[0]], wanted, 1e-9 * whole);
+    assert_near(p->internal.row[0][p->place_of[0]], wanted, 1e-9 * whole);
     d->clock.time_step = step;
   }
   for (int k = 1; k <= 20; ++k) { /* drawn further at a steady rate: what the dashpot lags behind goes to rate x tau */
-    p->displacement[0][p->place_of[1]] = e * (1 + k);
+    p->displacement.row[0][p->place_of[1]] = e * (1 + k);
     compute_forces(m);
     domain_commit_points(d);
   }
   /* e - v = rate tau + (h - rate tau) exp(-t / tau), h = e exp(-12 step / tau) when it began */
   const double rate = e / step, h = e * exp(-12 * step / tau) - rate * tau,
                wanted = whole / e * (21 * e * (1 - share) + share * (rate * tau + h * exp(-20 * step / tau)));
-  assert_near(p->internal[0][p->place_of[0]], wanted, 1e-9 * wanted);
+  assert_near(p->internal.row[0][p->place_of[0]], wanted, 1e-9 * wanted);
   breccia_model_destroy(&m);
 }
 
@@ -352,7 +352,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
     assert_int_equal(one->broken_count, three->broken_count);
     assert_true(one->fracture_energy == three->fracture_energy);
     for (int c = 0; c < 3; ++c)
-      assert_memory_equal(one->particles->velocity[c], three->particles->velocity[c],
+      assert_memory_equal(one->particles->velocity.row[c], three->particles->velocity.row[c],
                           sizeof(double) * (size_t)one->particles->places);
   }
   for (int k = 0; k < 4; ++k) breccia_model_destroy(&m[k]);

@@ -18,7 +18,7 @@ static double mean_moved(const breccia_model *m, const double along[2], double l
     const int32_t i = p->place_of[n];
     const double x = along[0] * p->position[0][i] + along[1] * p->position[1][i];
     if (x < low || x > high || body_outside(&m->domain.body, n)) continue;
-    sum += along[0] * p->displacement[0][i] + along[1] * p->displacement[1][i];
+    sum += along[0] * p->displacement.row[0][i] + along[1] * p->displacement.row[1][i];
     distance += x;
     ++count;
   }
@@ -110,7 +110,7 @@ static double bent_cantilever(int rows, double horizon, double poisson)
                young, poisson, horizon, length, rows, force / rows / pow(length, 3));
   step_surely(m, 1);
   const double at[3] = {x, rows / 2 + 0.5, 0};
-  const double found = m->domain.particles->displacement[1][particles_nearest(m->domain.particles, at)];
+  const double found = m->domain.particles->displacement.row[1][particles_nearest(m->domain.particles, at)];
   breccia_model_destroy(&m);
   const double shear = young / (2 * (1 + poisson)), shape = 10 * (1 + poisson) / (12 + 11 * poisson);
   const double wanted = x * x * (3 * length - x) / (6 * young * inertia) + x / (shape * shear * rows);
@@ -183,9 +183,9 @@ static void halves_of_bars_move_as_whole_ones(void **state)
     const int32_t i = part->place_of[n];
     if (body_outside(&models[1]->domain.body, n)) continue;
     const double at[3] = {part->position[0][i], part->position[1][i], part->position[2][i]};
-    const double other = whole->displacement[0][particles_nearest(whole, at)];
+    const double other = whole->displacement.row[0][particles_nearest(whole, at)];
     ++count;
-    if (at[0] > 2) assert_near(part->displacement[0][i] / other, 1, 1e-6);
+    if (at[0] > 2) assert_near(part->displacement.row[0][i] / other, 1, 1e-6);
   }
   assert_int_equal(count, 10 * 4 * 3);
   for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
@@ -227,9 +227,9 @@ static void halves_of_bars_of_two_formulations_move_as_whole_ones(void **state)
       const int32_t i = part->place_of[n];
       if (body_outside(&models[1]->domain.body, n)) continue;
       const double at[3] = {part->position[0][i], part->position[1][i], part->position[2][i]};
-      const double other = whole->displacement[0][particles_nearest(whole, at)];
+      const double other = whole->displacement.row[0][particles_nearest(whole, at)];
       ++count;
-      if (at[0] > 2) assert_near(part->displacement[0][i] / other, 1, 1e-6);
+      if (at[0] > 2) assert_near(part->displacement.row[0][i] / other, 1, 1e-6);
     }
     assert_int_equal(count, 10 * 3 * 3);
     for (int half = 0; half < 2; ++half) breccia_model_destroy(&models[half]);
@@ -268,8 +268,8 @@ static double stretched_strip(double turn, double poisson)
     const int32_t i = p->place_of[n];
     const double x = c * p->position[0][i] + s * p->position[1][i], y = -s * p->position[0][i] + c * p->position[1][i],
                  u = strain * x, v = -poisson * strain * y;
-    p->displacement[0][i] = c * u - s * v;
-    p->displacement[1][i] = s * u + c * v;
+    p->displacement.row[0][i] = c * u - s * v;
+    p->displacement.row[1][i] = s * u + c * v;
   }
   compute_forces(m);
   for (int32_t n = 0; n < p->count; ++n) {

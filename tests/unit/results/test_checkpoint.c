@@ -106,8 +106,8 @@ static void two_are_kept_and_each_leads_to_the_same_steps(void **state)
     step_surely(again, 130 - breccia_model_steps_done(again));
     const Particles *p = model->domain.particles, *q = again->domain.particles;
     for (int k = 0; k < 3; ++k) {
-      assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
-      assert_memory_equal(p->velocity[k], q->velocity[k], sizeof(double) * (size_t)p->places);
+      assert_memory_equal(p->displacement.row[k], q->displacement.row[k], sizeof(double) * (size_t)p->places);
+      assert_memory_equal(p->velocity.row[k], q->velocity.row[k], sizeof(double) * (size_t)p->places);
     }
     breccia_model_destroy(&again);
   }

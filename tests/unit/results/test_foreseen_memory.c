@@ -57,8 +57,8 @@ static bool take_other_ways(breccia_model *m)
   Static *s = m->solver.own;
   if (s->newton.relaxes) return false;
   breccia_error *error = breccia_error_create();
-  assert_null(s->descent.room[0]); /* nothing has jumped yet */
-  assert_null(s->relaxation.velocity[0]);
+  assert_null(s->descent.room.row[0]); /* nothing has jumped yet */
+  assert_null(s->relaxation.velocity.row[0]);
   assert_int_equal(descent_create(&s->descent, &s->newton, error), 0);
   assert_int_equal(relaxation_create(&s->relaxation, &s->newton, error), 0);
   breccia_error_destroy(&error);

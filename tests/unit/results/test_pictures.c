@@ -371,7 +371,7 @@ static void layers_outside_the_body_are_not_shown(void **state)
     if (body_outside(&model->domain.body, n)) continue;
     for (int k = 0; k < 2; ++k) {
       assert_true(view.positions[3 * own + k] == p->position[k][p->place_of[n]]);
-      assert_near(u[3 * own + k], p->displacement[k][p->place_of[n]], 1e-8); /* single precision in the file */
+      assert_near(u[3 * own + k], p->displacement.row[k][p->place_of[n]], 1e-8); /* single precision in the file */
       largest = larger_of(largest, fabs(u[3 * own + k]));
     }
     ++own;

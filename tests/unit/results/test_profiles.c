@@ -39,7 +39,7 @@ static void a_swing_is_told_at_its_largest(void **state)
   Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->velocity[0][i] = -v * sin(k * p->position[1][i]);
+    p->velocity.row[0][i] = -v * sin(k * p->position[1][i]);
   }
   char folder[] = "/tmp/breccia-XXXXXX";
   assert_non_null(mkdtemp(folder));

@@ -216,7 +216,7 @@ static void arrays_by_name_are_those_of_now(void **state)
     const Particles *p = m->domain.particles;
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      for (int k = 0; k < 3; ++k) p->displacement[k][i] = 1e-3 * p->position[0][i] * (k + 1);
+      for (int k = 0; k < 3; ++k) p->displacement.row[k][i] = 1e-3 * p->position[0][i] * (k + 1);
     }
     for (int k = 0; k < 6; ++k) {
       char name[16];
@@ -243,7 +243,7 @@ static void the_peaks_of_a_summary_are_extremes_over_all_particles(void **state)
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const double z = p->position[2][p->place_of[n]];
-    p->displacement[2][p->place_of[n]] = 1e-3 * z * (0.6 - z);
+    p->displacement.row[2][p->place_of[n]] = 1e-3 * z * (0.6 - z);
   }
   char path[80], file[112];
   run_into(m, "peaks", path, sizeof path);
@@ -325,7 +325,7 @@ static void bodies_in_space_stand_upright_in_pictures(void **state)
     breccia_model *m = body("results: {every: 1}\n");
     const Particles *p = m->domain.particles;
     for (int64_t n = 0; n < p->count; ++n)
-      p->displacement[2][p->place_of[n]] = 1e-3 * p->position[axis][p->place_of[n]];
+      p->displacement.row[2][p->place_of[n]] = 1e-3 * p->position[axis][p->place_of[n]];
     char path[80], file[112];
     run_into(m, axis ? "up" : "right", path, sizeof path);
     snprintf(file, sizeof file, "%s/results.vtkhdf", path);
@@ -359,7 +359,7 @@ static void a_ball_is_lit_from_above_and_from_the_left(void **state)
   Sphere around = {.radius = 0.01};
   for (int k = 0; k < 3; ++k) around.centre[k] = p->position[k][p->place_of[57]];
   const Shape ball = {.sphere = &around};
-  for (int64_t n = 0; n < p->count; ++n) p->displacement[2][p->place_of[n]] = 1e-3; /* all of one colour */
+  for (int64_t n = 0; n < p->count; ++n) p->displacement.row[2][p->place_of[n]] = 1e-3; /* all of one colour */
   char path[80], file[112];
   run_into(m, "ball", path, sizeof path);
   snprintf(file, sizeof file, "%s/results.vtkhdf", path);

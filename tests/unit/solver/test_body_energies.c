@@ -164,8 +164,8 @@ static void one_period_has_half_of_two(void **state)
       for (int64_t n = 0; n < p->count; ++n) {
         const int32_t i = p->place_of[n];
         const double angle = 2 * acos(-1) * p->position[0][i] / 0.8, y = p->position[1][i];
-        p->velocity[0][i] = 0.3 * sin(angle + 0.4) * y;
-        p->velocity[1][i] = 0.2 * cos(2 * angle) * y;
+        p->velocity.row[0][i] = 0.3 * sin(angle + 0.4) * y;
+        p->velocity.row[1][i] = 0.2 * cos(2 * angle) * y;
       }
       e[k] = energy_at_end(m, 2e-3);
     }

@@ -52,18 +52,19 @@ static void stresses_of_the_elastic_stage_stay(void **state)
   step_surely(m, 1);
   double *settled = calloc((size_t)p->places, sizeof *settled), vertical = stress_at_middle(m, 1), most = 0;
   assert_non_null(settled);
-  memcpy(settled, p->displacement[1], (size_t)p->places * sizeof *settled);
+  memcpy(settled, p->displacement.row[1], (size_t)p->places * sizeof *settled);
   assert_near(vertical, -WEIGHT * HEIGHT / 2, 0.01 * WEIGHT * HEIGHT / 2);
   const double poisson = (3 * BULK - 2 * SHEAR) / (2 * (3 * BULK + SHEAR));
   assert_near(stress_at_middle(m, 0), vertical * poisson / (1 - poisson), 0.01 * fabs(vertical));
   step_surely(m, INT64_MAX);
   for (int64_t i = 0; i < p->places; ++i) most = larger_of(most, fabs(settled[i]));
-  for (int64_t i = 0; i < p->places; ++i) assert_near(p->displacement[1][i], settled[i], 1e-9 * most);
+  for (int64_t i = 0; i < p->places; ++i) assert_near(p->displacement.row[1][i], settled[i], 1e-9 * most);
   assert_near(stress_at_middle(m, 1), vertical, 1e-9 * fabs(vertical));
   breccia_model *at_once = column(STRENGTH, "", "");
   step_surely(at_once, INT64_MAX);
   double more = 0;
-  for (int64_t i = 0; i < p->places; ++i) more = larger_of(more, fabs(at_once->domain.particles->displacement[1][i]));
+  for (int64_t i = 0; i < p->places; ++i)
+    more = larger_of(more, fabs(at_once->domain.particles->displacement.row[1][i]));
   print_message("settled by %.4g m elastically, by %.4g m by the law\n", most, more);
   assert_true(more > 1.02 * most);
   free(settled);

@@ -22,7 +22,7 @@ static double mean_end(const breccia_model *m)
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (p->position[0][i] < high[0] - 1e-9) continue;
-    sum += p->displacement[0][i];
+    sum += p->displacement.row[0][i];
     ++count;
   }
   return sum / count;
@@ -151,7 +151,7 @@ static void what_is_torn_off_at_rest_flies_on(void **state)
   double momentum = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[0][i] > 0.8) momentum += p->density[i] * p->volume[i] * p->velocity[0][i];
+    if (p->position[0][i] > 0.8) momentum += p->density[i] * p->volume[i] * p->velocity.row[0][i];
   }
   print_message("torn at %.3f kN; momentum %.4f kNs beside an impulse of %.4f kNs\n", 20 * begun, momentum, impulse);
   assert_near(end - begun, 0.05, 1e-6);

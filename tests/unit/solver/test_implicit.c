@@ -40,7 +40,7 @@ static void set_moving(breccia_model *model, double (*shape)(const double x[3]),
   const Particles *p = model->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->velocity[0][i] = speed * shape((const double[3]){p->position[0][i], p->position[1][i], p->position[2][i]});
+    p->velocity.row[0][i] = speed * shape((const double[3]){p->position[0][i], p->position[1][i], p->position[2][i]});
   }
   assert_int_equal(solver_begin(&model->solver, NULL), 0);
 }
@@ -80,8 +80,8 @@ static void errors_fall_with_the_square_of_the_step(void **state)
       double square = 0, size = 0;
       for (int64_t n = 0; n < m->domain.particles->count; ++n) {
         const int32_t i = m->domain.particles->place_of[n];
-        const double exact = reference->domain.particles->displacement[0][i];
-        square += pow(m->domain.particles->displacement[0][i] - exact, 2);
+        const double exact = reference->domain.particles->displacement.row[0][i];
+        square += pow(m->domain.particles->displacement.row[0][i] - exact, 2);
         size += exact * exact;
       }
       const double error = sqrt(square / size);
@@ -209,8 +209,8 @@ static double difference(const breccia_model *a, const breccia_model *b)
   const Particles *p = a->domain.particles;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      most = larger_of(most, fabs(p->displacement[k][i] - b->domain.particles->displacement[k][i]));
-      largest = larger_of(largest, fabs(p->displacement[k][i]));
+      most = larger_of(most, fabs(p->displacement.row[k][i] - b->domain.particles->displacement.row[k][i]));
+      largest = larger_of(largest, fabs(p->displacement.row[k][i]));
     }
   assert_true(largest > 0);
   return most / largest;
@@ -372,9 +372,9 @@ static void accelerations_are_those_of_the_bonds_that_are_left(void **state)
   double largest = 0;
   for (int64_t n = 3; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    const double wanted = (p->internal[0][i] + p->external[0][i]) / p->density[i];
+    const double wanted = (p->internal.row[0][i] + p->external.row[0][i]) / p->density[i];
     largest = larger_of(largest, fabs(wanted));
-    assert_near(s->acceleration[0][i], wanted, 1e-6 * largest + 1e-6);
+    assert_near(s->acceleration.row[0][i], wanted, 1e-6 * largest + 1e-6);
   }
   assert_true(largest > 1e3);       /* both ends of the bond spring back */
   assert_near(s->next, 5e-4, 1e-9); /* waves take 4.3e-4 s across a horizon */
@@ -483,8 +483,8 @@ static void a_body_that_flies_freely_takes_whole_steps(void **state)
   assert_true(solver_is_done(&m->solver));
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
-    assert_near(p->displacement[0][p->place_of[n]], 0.3, 1e-12);
-    assert_near(p->displacement[1][p->place_of[n]], -0.1, 1e-12);
+    assert_near(p->displacement.row[0][p->place_of[n]], 0.3, 1e-12);
+    assert_near(p->displacement.row[1][p->place_of[n]], -0.1, 1e-12);
   }
   breccia_model_destroy(&m);
 }

@@ -165,7 +165,7 @@ static double overlap(const breccia_model *model, const Mode *a, const Mode *b)
     for (int64_t n = 0; n < p->count; ++n) {
       if (body_outside(&model->domain.body, n)) continue;
       const int32_t i = p->place_of[n];
-      const double mass = p->density[i] * p->volume[i], u = a->displacement[k][i], v = b->displacement[k][i];
+      const double mass = p->density[i] * p->volume[i], u = a->displacement.row[k][i], v = b->displacement.row[k][i];
       product += mass * u * v;
       sizes[0] += mass * u * u;
       sizes[1] += mass * v * v;
@@ -249,16 +249,16 @@ static void modes_are_those_of_elastic_laws(void **state)
       "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}]\nsolve: {static: {increments: 1}}\n");
   const Particles *p = m->domain.particles;
   Modes before = modes_of(m, 3);
-  for (int64_t n = 0; n < p->count; ++n) p->displacement[0][p->place_of[n]] = 5e-4 * p->position[0][p->place_of[n]];
+  for (int64_t n = 0; n < p->count; ++n) p->displacement.row[0][p->place_of[n]] = 5e-4 * p->position[0][p->place_of[n]];
   compute_forces(m);
   double *forces = malloc(sizeof(double) * (size_t)p->places);
   assert_non_null(forces);
-  memcpy(forces, p->internal[0], sizeof(double) * (size_t)p->places);
+  memcpy(forces, p->internal.row[0], sizeof(double) * (size_t)p->places);
   Modes after = modes_of(m, 3);
   for (int n = 0; n < 3; ++n)
     assert_near(after.modes[n].frequency, before.modes[n].frequency, 1e-6 * before.modes[n].frequency);
   assert_false(domain_in_elastic_stage(&m->domain));
-  assert_memory_equal(forces, p->internal[0], sizeof(double) * (size_t)p->places);
+  assert_memory_equal(forces, p->internal.row[0], sizeof(double) * (size_t)p->places);
   free(forces);
   modes_destroy(&before);
   modes_destroy(&after);
@@ -305,7 +305,7 @@ static void pictures_show_modes_as_they_are(void **state)
   if (breccia_model_modes(m, &wish, error)) fail_msg("%s", breccia_error_text(error));
   const Particles *p = m->domain.particles;
   for (int64_t i = 0; i < p->places; ++i)
-    for (int k = 0; k < 3; ++k) assert_true(p->displacement[k][i] == 0); /* the body itself is where it was */
+    for (int k = 0; k < 3; ++k) assert_true(p->displacement.row[k][i] == 0); /* the body itself is where it was */
   ResultView view;
   snprintf(path, sizeof path, "%s/results.vtkhdf", folder);
   assert_int_equal(result_view_open(&view, path, error), 0);
@@ -320,7 +320,7 @@ static void pictures_show_modes_as_they_are(void **state)
     for (int64_t a = 0; a < p->count; ++a) {
       double squares[2] = {0};
       for (int k = 0; k < 3; ++k) {
-        const double shape = modes.modes[n].displacement[k][p->place_of[a]];
+        const double shape = modes.modes[n].displacement.row[k][p->place_of[a]];
         squares[0] += shape * shape;
         squares[1] += shown[3 * a + k] * shown[3 * a + k];
         sign += shape * shown[3 * a + k];
@@ -333,7 +333,7 @@ static void pictures_show_modes_as_they_are(void **state)
     for (int64_t a = 0; a < p->count; ++a)
       for (int k = 0; k < 3; ++k)
         assert_near(shown[3 * a + k] / length * (sign < 0 ? -1 : 1),
-                    modes.modes[n].displacement[k][p->place_of[a]] / most, 1e-4);
+                    modes.modes[n].displacement.row[k][p->place_of[a]] / most, 1e-4);
     free(shown);
   }
   result_view_close(&view);

@@ -20,7 +20,7 @@ static double mean_motion(const breccia_model *model, int load, int axis)
 {
   const Selection *s = &model->loading.loads[load].selection;
   double sum = 0;
-  for (int64_t n = 0; n < s->count; ++n) sum += model->domain.particles->displacement[axis][s->places[n]];
+  for (int64_t n = 0; n < s->count; ++n) sum += model->domain.particles->displacement.row[axis][s->places[n]];
   return sum / (double)s->count;
 }
 
@@ -516,7 +516,7 @@ static void a_state_taken_up_goes_on_to_the_same_bits(void **state)
   for (int k = 0; k < 2; ++k) assert_true(run(m[k]));
   const Particles *p = m[0]->domain.particles, *q = m[1]->domain.particles;
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
+    assert_memory_equal(p->displacement.row[k], q->displacement.row[k], sizeof(double) * (size_t)p->places);
   breccia_error_destroy(&error);
   state_list_destroy(&from);
   state_list_destroy(&to);
@@ -552,7 +552,7 @@ static void a_block_that_slides_has_failed(void **state)
     double force[3] = {0};
     for (int64_t i = 0; i < p->places; ++i)
       for (int k = 0; k < 3 && p->number[i] >= 0; ++k)
-        if (p->position[2][i] > 0.03) force[k] += p->internal[k][i] * p->volume[i];
+        if (p->position[2][i] > 0.03) force[k] += p->internal.row[k][i] * p->volume[i];
     assert_near(force[2], weight, 1e-3 * weight);
     assert_near(force[0], steep ? -0.4 * weight : -0.3 * weight, 1e-3 * weight);
     breccia_model_destroy(&m);

@@ -183,10 +183,11 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
                      b == 2 ? "plane strain" : "3-D", controls[c], bodies[b]);
         m->solver.clock.time_step = m->solver.clock.stable * (over ? 1.1 : 1);
         const Particles *p = m->domain.particles;
-        for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
+        for (int64_t n = 0; n < p->count; ++n) p->velocity.row[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
         const int stopped = breccia_model_step(m, steps, NULL);
         double largest = 0;
-        for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement[0][p->place_of[n]]));
+        for (int64_t n = 0; n < p->count; ++n)
+          largest = larger_of(largest, fabs(p->displacement.row[0][p->place_of[n]]));
         if (over ? !stopped && largest < 1e-3 : stopped || !(largest < 1e-3))
           fail_msg("body %d, control %s, %s the stable step: displacement %g", b, controls[c], over ? "above" : "at",
                    largest);
@@ -311,9 +312,9 @@ static void prescribed_particles_go_where_they_are_told(void **state)
   assert_int_equal(s->count, 16);
   for (int64_t n = 0; n < s->count; ++n) {
     int32_t i = s->places[n];
-    assert_near(0.6 * p->displacement[0][i] + 0.8 * p->displacement[1][i], 0.01 * factor, 1e-12);
+    assert_near(0.6 * p->displacement.row[0][i] + 0.8 * p->displacement.row[1][i], 0.01 * factor, 1e-12);
   }
-  assert_near(p->displacement[0][m->loading.loads[0].selection.places[3]], 0, 1e-15);
+  assert_near(p->displacement.row[0][m->loading.loads[0].selection.places[3]], 0, 1e-15);
   Energy e = solver_energy(&m->solver);
   if (e.imbalance > 1e-2)
     fail_msg("imbalance %g: external %g kinetic %g internal %g damping %g", e.imbalance, e.external, e.kinetic,
@@ -417,8 +418,8 @@ static void a_rotation_that_blows_up_stops_a_run_too(void **state)
     assert_int_equal(breccia_model_load_string(deck, "deck", NULL, &m, error), 0);
     const Particles *p = m->domain.particles;
     const int32_t i = p->place_of[31];
-    assert_true(p->motions > ROTATION);
-    p->velocity[p->motions - 1][i] = turning[k];
+    assert_true(particles_have_rotations(p));
+    p->velocity.row[p->space.rows - 1][i] = turning[k];
     assert_int_equal(breccia_model_step(m, 1, error), k ? BRECCIA_FAILURE : BRECCIA_OK);
     assert_int_equal(ledger_has_blown_up(&m->solver.ledger), k);
     if (k)
@@ -456,7 +457,7 @@ static void a_force_that_is_no_number_is_reported_with_place_step_and_cause(void
   breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
                               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
                               "solve: {explicit: {steps: 100}}\n");
-  m->domain.particles->velocity[0][m->domain.particles->place_of[77]] = 1e200;
+  m->domain.particles->velocity.row[0][m->domain.particles->place_of[77]] = 1e200;
   assert_int_equal(breccia_model_step(m, 100, error), BRECCIA_FAILURE);
   holds_words(breccia_error_text(error), "step 1 (time |: the force on particle |] is not a number; likely cause: | "
                                          "(time step |, stable step |, kinetic energy ");
@@ -542,7 +543,7 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   int32_t a = particles_nearest(p, left), b = particles_nearest(p, right);
   Energy e = solver_energy(&m->solver);
   assert_true(e.kinetic < 1e-5 * e.internal);
-  double opening = p->displacement[0][b] - p->displacement[0][a];
+  double opening = p->displacement.row[0][b] - p->displacement.row[0][a];
   print_message("opening at rest: %.4f mm\n", 1e3 * opening);
   assert_near(opening, 3.34e-3, 0.02 * 3.34e-3);
   breccia_model_destroy(&m);
@@ -569,7 +570,7 @@ static void prescribed_particles_have_the_velocity_of_their_motion(void **state)
       const Selection *s = &m->loading.loads[n].selection;
       for (int64_t q = 0; q < s->count; ++q) {
         double along = 0;
-        for (int k = 0; k < 3; ++k) along += direction[n][k] * p->velocity[k][s->places[q]];
+        for (int k = 0; k < 3; ++k) along += direction[n][k] * p->velocity.row[k][s->places[q]];
         assert_near(along, speed[n], 1e-9 * speed[n]);
       }
     }

@@ -143,7 +143,7 @@ static void springs_blows_and_ties_begin_with_their_stage(void **state)
   /* Half of it is thrown back and tied to the rest at once: the common speed is the mean. */
   assert_int_equal(breccia_model_step(m, 1, NULL), 0);
   const Particles *p = m->domain.particles;
-  for (int64_t n = 0; n < p->count; ++n) assert_near(p->velocity[0][p->place_of[n]], (speed - 2) / 2, 2e-3);
+  for (int64_t n = 0; n < p->count; ++n) assert_near(p->velocity.row[0][p->place_of[n]], (speed - 2) / 2, 2e-3);
   run_all(m);
   assert_true(solver_energy(&m->solver).imbalance < 1e-3);
   breccia_model_destroy(&m);
@@ -374,7 +374,7 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
       steps = m->solver.clock.step;
       for (int c = 0; c < 3; ++c) {
         left[c] = malloc(sizeof(double) * (size_t)p->places);
-        memcpy(left[c], p->displacement[c], sizeof(double) * (size_t)p->places);
+        memcpy(left[c], p->displacement.row[c], sizeof(double) * (size_t)p->places);
       }
       print_message("stopped behind increment %lld\n", (long long)steps);
       snprintf(command, sizeof command, "grep -q 'Time Value=\"%g\"' %s/results.xdmf", m->solver.clock.time, folder);
@@ -383,7 +383,8 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
     } else if (steps > 0) {
       assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_OK);
     }
-    for (int c = 0; c < 3; ++c) assert_memory_equal(left[c], p->displacement[c], sizeof(double) * (size_t)p->places);
+    for (int c = 0; c < 3; ++c)
+      assert_memory_equal(left[c], p->displacement.row[c], sizeof(double) * (size_t)p->places);
     breccia_model_destroy(&m);
   }
   for (int c = 0; c < 3; ++c) free(left[c]);
@@ -540,7 +541,7 @@ static void one_stage_in_a_list_is_the_same_as_no_list(void **state)
   assert_same_state(&a, &b);
   assert_int_equal(halves->solver.clock.step, 200);
   const Particles *p = plain->domain.particles, *q = halves->domain.particles;
-  assert_memory_equal(p->displacement[0], q->displacement[0], sizeof(double) * (size_t)p->places);
+  assert_memory_equal(p->displacement.row[0], q->displacement.row[0], sizeof(double) * (size_t)p->places);
   state_copy_destroy(&a);
   state_copy_destroy(&b);
   breccia_model_destroy(&plain);
@@ -566,7 +567,7 @@ static void laws_with_rates_do_not_see_where_a_stage_begins(void **state)
     run_all(one);
     run_all(two);
     const Particles *p = one->domain.particles, *q = two->domain.particles;
-    assert_memory_equal(p->displacement[0], q->displacement[0], sizeof(double) * (size_t)p->places);
+    assert_memory_equal(p->displacement.row[0], q->displacement.row[0], sizeof(double) * (size_t)p->places);
     breccia_model_destroy(&one);
     breccia_model_destroy(&two);
   }

@@ -358,9 +358,9 @@ static void strains_that_are_left_out_are_found_to_the_same_bits(void **state)
     assert_same_numbers(d->stress, with->stress, 6, p->places, "stress as kept again");
     advance(leaving, 20);
     advance(keeping, 20);
-    assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
-    assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
-    assert_same_numbers(p->internal, q->internal, 3, p->places, "force");
+    assert_same_numbers(p->displacement.row, q->displacement.row, 3, p->places, "displacement");
+    assert_same_numbers(p->velocity.row, q->velocity.row, 3, p->places, "velocity");
+    assert_same_numbers(p->internal.row, q->internal.row, 3, p->places, "force");
     breccia_model_destroy(&leaving);
     breccia_model_destroy(&keeping);
   }
@@ -377,16 +377,16 @@ static void try_steps_back(const char *solve)
   assert_int_equal(model_begin(back, NULL), BRECCIA_OK);
   for (int k = 0; k < 30; ++k) assert_int_equal(model_advance(back, NULL), BRECCIA_OK);
   advance(apart, 30);
-  assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
-  assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
+  assert_same_numbers(p->displacement.row, q->displacement.row, 3, p->places, "displacement");
+  assert_same_numbers(p->velocity.row, q->velocity.row, 3, p->places, "velocity");
   assert_true(back->solver.ledger.kinetic == apart->solver.ledger.kinetic);
   const int32_t i = p->place_of[p->count / 2];
-  assert_true(fabs(p->velocity[0][i]) > 1e-3);
-  const double u = p->displacement[0][i + 8], v = p->velocity[0][i + 8];
-  p->velocity[0][i] = NAN; /* the next step comes to no numbers */
+  assert_true(fabs(p->velocity.row[0][i]) > 1e-3);
+  const double u = p->displacement.row[0][i + 8], v = p->velocity.row[0][i + 8];
+  p->velocity.row[0][i] = NAN; /* the next step comes to no numbers */
   assert_int_equal(model_advance(back, NULL), BRECCIA_FAILURE);
-  assert_near(p->displacement[0][i + 8], u, 1e-14);
-  assert_near(p->velocity[0][i + 8], v, 1e-14);
+  assert_near(p->displacement.row[0][i + 8], u, 1e-14);
+  assert_near(p->velocity.row[0][i + 8], v, 1e-14);
   model_leave(&entry, BRECCIA_OK, NULL);
   breccia_model_destroy(&back);
   breccia_model_destroy(&apart);
@@ -463,7 +463,7 @@ static void rows_have_names_of_their_own_and_known_units(void **state)
     if (!dimension_find(list.rows[k].unit)) fail_msg("%s: unit '%s'", list.rows[k].name, list.rows[k].unit);
     assert_true(list.rows[k].values || (list.rows[k].care && list.rows[k].care->save));
   }
-  assert_ptr_equal(breccia_model_array(m, "force y"), m->domain.particles->internal[1]);
+  assert_ptr_equal(breccia_model_array(m, "force y"), m->domain.particles->internal.row[1]);
   assert_ptr_equal(breccia_model_array(m, "stress zx"), m->domain.regions[0].points.stress[5]);
   assert_null(breccia_model_array(m, "history"));
   assert_null(breccia_model_array(m, "force"));

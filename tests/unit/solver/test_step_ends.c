@@ -28,7 +28,7 @@ static void damped_bodies_come_to_rest_at_the_default_step(void **state)
     assert_true(rest.meant);
     if (k < 3) {
       if (!rest.reached) fail_msg("%s: unbalanced %g, kinetic %g", damping[k], rest.unbalanced, rest.kinetic);
-      const double u = p->displacement[0][p->place_of[30]];
+      const double u = p->displacement.row[0][p->place_of[30]];
       assert_near(u, 1e-4 * (p->position[0][p->place_of[30]] - 0.2), 0.03 * 2.9e-4);
     } else { /* creeps: each step is no longer than the damping's own time */
       assert_false(rest.reached);
@@ -144,9 +144,9 @@ static double *bits_of_state(const Domain *d, size_t *bytes)
   *bytes = ARRAYS * places * sizeof *bits;
   for (size_t k = 0; k < ARRAYS; ++k)
     memcpy(bits + k * places,
-           k < 3    ? d->particles->displacement[k]
-           : k < 6  ? d->particles->velocity[k - 3]
-           : k < 9  ? d->particles->internal[k - 6]
+           k < 3    ? d->particles->displacement.row[k]
+           : k < 6  ? d->particles->velocity.row[k - 3]
+           : k < 9  ? d->particles->internal.row[k - 6]
            : k < 15 ? d->strain[k - 9]
                     : d->stress[k - 15],
            places * sizeof *bits);
@@ -216,7 +216,7 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
   assert_true(whole->domain.broken_count > 0);
   assert_int_equal(second->domain.broken_count, whole->domain.broken_count);
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(second->domain.particles->displacement[k], whole->domain.particles->displacement[k],
+    assert_memory_equal(second->domain.particles->displacement.row[k], whole->domain.particles->displacement.row[k],
                         sizeof(double) * (size_t)whole->domain.particles->places);
   breccia_model_destroy(&whole);
   breccia_model_destroy(&first);

@@ -21,7 +21,7 @@ static void strike(breccia_model *m, int mode)
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    p->velocity[0][i] = 1e-3 * sin((2 * mode - 1) * pi * p->position[0][i] / (2 * height));
+    p->velocity.row[0][i] = 1e-3 * sin((2 * mode - 1) * pi * p->position[0][i] / (2 * height));
   }
 }
 
@@ -73,7 +73,7 @@ static void tied_rows_decay_by_their_ratio(void **state)
                               "solve: {explicit: {end time: 1.62, stiffness damping: 4 ms}}\n");
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n)
-    p->velocity[0][p->place_of[n]] = 1e-3 * sin(pi * p->position[1][p->place_of[n]] / (2 * height));
+    p->velocity.row[0][p->place_of[n]] = 1e-3 * sin(pi * p->position[1][p->place_of[n]] / (2 * height));
   const double first = energy_at(m, 0.02), last = energy_at(m, 1.62), zeta = pi * 4e-3 * 2.5;
   assert_near(log(first / last) / (4 * pi * 4), zeta, 0.03 * zeta);
   assert_balanced(m, 1e-6);
@@ -114,8 +114,8 @@ static void soil_is_amplified_by_two_point_damping(void **state)
       step_surely(m, 1);
       const double t = breccia_model_time(m), step = t - fmax(before, 5.2);
       if (t <= 5.2) continue;
-      in += 2 * step / 0.8 * p->velocity[0][top] * sin(omega * t);
-      across += 2 * step / 0.8 * p->velocity[0][top] * cos(omega * t);
+      in += 2 * step / 0.8 * p->velocity.row[0][top] * sin(omega * t);
+      across += 2 * step / 0.8 * p->velocity.row[0][top] * cos(omega * t);
     }
     const double expected = amplification(f, alpha, b); /* the rock moves by -cos(omega t) / omega */
     assert_near(hypot(in, across - 1 / omega) * omega, expected, 0.04 * expected);
@@ -166,7 +166,7 @@ static void a_burst_tells_the_transfer_function(void **state)
   double ground = 0;
   while (!solver_is_done(&m->solver)) { /* the ground's velocity by the trapezium rule over many points of a step */
     const double t = breccia_model_time(m);
-    fprintf(files[0], "%.17g %.17g\n", t, p->velocity[0][top] + ground);
+    fprintf(files[0], "%.17g %.17g\n", t, p->velocity.row[0][top] + ground);
     fprintf(files[1], "%.17g %.17g\n", t, ground);
     step_surely(m, 1);
     const double step = breccia_model_time(m) - t;
@@ -252,10 +252,10 @@ static void what_does_not_yield_is_damped_as_elastic_bodies_are(void **state)
     }
     const Particles *one = m[0]->domain.particles, *other = m[1]->domain.particles;
     double most = 0;
-    for (int64_t i = 0; i < one->places; ++i) most = larger_of(most, fabs(one->displacement[0][i]));
+    for (int64_t i = 0; i < one->places; ++i) most = larger_of(most, fabs(one->displacement.row[0][i]));
     for (int k = 0; k < 2; ++k)
       for (int64_t i = 0; i < one->places; ++i)
-        assert_near(other->displacement[k][i], one->displacement[k][i], 1e-8 * most);
+        assert_near(other->displacement.row[k][i], one->displacement.row[k][i], 1e-8 * most);
     const double damping = solver_energy(&m[0]->solver).damping;
     assert_true(most > 0 && damping > 0);
     assert_near(solver_energy(&m[1]->solver).damping, damping, 1e-7 * damping);
@@ -281,7 +281,7 @@ static void the_stable_step_is_shorter(void **state)
     if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
     assert_near(breccia_model_stable_time_step(m), sqrt(b * b + plain * plain) - b, 1e-3 * plain);
     const Particles *p = m->domain.particles;
-    for (int64_t n = 0; n < p->count; ++n) p->velocity[0][p->place_of[n]] = n % 2 ? 1e-3 : -1e-3;
+    for (int64_t n = 0; n < p->count; ++n) p->velocity.row[0][p->place_of[n]] = n % 2 ? 1e-3 : -1e-3;
     double first = 0, most = 0;
     for (int n = 0; n < 3000 && isfinite(most) && most < 1; ++n) {
       if (breccia_model_step(m, 1, error)) {
@@ -323,7 +323,7 @@ static void bonds_break_as_without(void **state)
         step_surely(m, 1);
         broken[k] += (double)breccia_model_broken_bonds(m) * (double)m->solver.clock.step;
       }
-      moved[k] = m->domain.particles->displacement[0][m->domain.particles->place_of[5]];
+      moved[k] = m->domain.particles->displacement.row[0][m->domain.particles->place_of[5]];
       if (breccia_model_broken_bonds(m) < 10) fail_msg("%lld", (long long)breccia_model_broken_bonds(m));
       breccia_model_destroy(&m);
     }

@@ -33,8 +33,8 @@ static void assert_moved(const breccia_model *m, double x, double y, double tole
 {
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
-    assert_near(p->displacement[0][p->place_of[n]], x, tolerance);
-    assert_near(p->displacement[1][p->place_of[n]], y, tolerance);
+    assert_near(p->displacement.row[0][p->place_of[n]], x, tolerance);
+    assert_near(p->displacement.row[1][p->place_of[n]], y, tolerance);
   }
 }
 

@@ -6,7 +6,6 @@
 #include "base/random.h"
 #include "solver/matrix.h"
 #include "solver/preconditioner.h"
-#include "solver/vectors.h"
 #include <dirent.h>
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
@@ -96,14 +95,14 @@ typedef struct Problem {
   breccia_model *model;
   Domain *domain;
   LinearSolver solver;
-  double *f[MOTIONS], *v[MOTIONS], *kv[MOTIONS];
+  Vector f[1], v[1], kv[1];
   Team *before;
 } Problem;
 
-static void fill_randomly(const Particles *p, double *const v[MOTIONS], double size, uint64_t seed)
+static void fill_randomly(const Particles *p, const Vector *v, double size, uint64_t seed)
 {
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t n = 0; n < p->count; ++n) v->row[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
 }
 
 static Problem pose(breccia_model *model, double mass_factor)
@@ -115,8 +114,8 @@ static Problem pose(breccia_model *model, double mass_factor)
                                   .loading = &model->loading,
                                   .unknowns = unknowns_of(problem.domain, &model->loading),
                                   .mass_factor = mass_factor};
-  assert_true(vectors_make(problem.f, p, "test", NULL) && vectors_make(problem.v, p, "test", NULL) &&
-              vectors_make(problem.kv, p, "test", NULL));
+  assert_true(vector_create(problem.f, &p->space, "test", NULL) && vector_create(problem.v, &p->space, "test", NULL) &&
+              vector_create(problem.kv, &p->space, "test", NULL));
   fill_randomly(p, problem.f, 1, 4);
   unknowns_clear_rest(&problem.solver.unknowns, problem.f);
   assert_int_equal(domain_linearise(problem.domain, NULL, NULL), 0);
@@ -132,7 +131,7 @@ static void begin(Problem *p, int word)
 static LinearRecord solve(Problem *p, double tolerance)
 {
   LinearRecord record;
-  vectors_clear(p->v, p->domain->particles);
+  vector_clear(p->v);
   assert_int_equal(linear_solver_solve(&p->solver, p->f, p->v, tolerance, &record, NULL), 0);
   return record;
 }
@@ -140,46 +139,47 @@ static LinearRecord solve(Problem *p, double tolerance)
 static void forget(Problem *p)
 {
   linear_solver_destroy(&p->solver);
-  vectors_free(p->f), vectors_free(p->v), vectors_free(p->kv);
+  vector_destroy(p->f), vector_destroy(p->v), vector_destroy(p->kv);
   team_use(p->before);
   breccia_model_destroy(&p->model);
 }
 
 /** Solves by products with one displacement after another. What is not free has a stiffness of 1, alone. */
-static void solve_densely(Problem *p, double *const v[MOTIONS])
+static void solve_densely(Problem *p, const Vector *v)
 {
   const Particles *particles = p->domain->particles;
   const Unknowns *u = &p->solver.unknowns;
-  const int rows = particles->motions, size = rows * (int)particles->count;
+  const int rows = particles->space.rows, size = rows * (int)particles->count;
   double *matrix = calloc((size_t)size * (size_t)size, sizeof *matrix), *right = calloc((size_t)size, sizeof *right);
-  double *moved[MOTIONS], scale = 0;
-  assert_true(vectors_make(moved, particles, "test", NULL));
+  Vector moved[1] = {{0}};
+  double scale = 0;
+  assert_true(vector_create(moved, &particles->space, "test", NULL));
   for (int column = 0; column < size; ++column) {
     const int32_t place = particles->place_of[column / rows];
-    vectors_clear(moved, particles);
-    moved[column % rows][place] = 1;
+    vector_clear(moved);
+    moved->row[column % rows][place] = 1;
     unknowns_clear_rest(u, moved);
     for (int row = 0; row < size; ++row)
-      matrix[row * size + column] = (row == column) - moved[row % rows][particles->place_of[row / rows]];
+      matrix[row * size + column] = (row == column) - moved->row[row % rows][particles->place_of[row / rows]];
     linear_solver_apply(&p->solver, moved, p->kv);
     for (int row = 0; row < size; ++row)
-      matrix[row * size + column] += p->kv[row % rows][particles->place_of[row / rows]];
-    right[column] = p->f[column % rows][place];
+      matrix[row * size + column] += p->kv->row[row % rows][particles->place_of[row / rows]];
+    right[column] = p->f->row[column % rows][place];
     scale = larger_of(scale, fabs(matrix[column * size + column]));
   }
   assert_true(linear_solve(size, matrix, 1, right));
-  for (int row = 0; row < size; ++row) v[row % rows][particles->place_of[row / rows]] = right[row];
-  vectors_free(moved);
+  for (int row = 0; row < size; ++row) v->row[row % rows][particles->place_of[row / rows]] = right[row];
+  vector_destroy(moved);
   free(matrix), free(right);
 }
 
-static void assert_same_answer(const Problem *p, double *const wanted[MOTIONS], double tolerance, const char *name)
+static void assert_same_answer(const Problem *p, const Vector *wanted, double tolerance, const char *name)
 {
   double most = 0, off = 0;
-  for (int k = 0; k < p->domain->particles->motions; ++k)
+  for (int k = 0; k < p->domain->particles->space.rows; ++k)
     for (int64_t i = 0; i < p->domain->particles->places; ++i) {
-      most = larger_of(most, fabs(wanted[k][i]));
-      off = larger_of(off, fabs(wanted[k][i] - p->v[k][i]));
+      most = larger_of(most, fabs(wanted->row[k][i]));
+      off = larger_of(off, fabs(wanted->row[k][i] - p->v->row[k][i]));
     }
   if (!(off <= tolerance * most) || !(most > 0)) fail_msg("%s: off by %g of %g", name, off, most);
 }
@@ -193,9 +193,9 @@ static void answers_are_those_of_a_dense_solution(void **state)
       if (under_sanitizers() && (c + way) % 3) continue;
       Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way == 1 ? 3e3 : 0);
       char name[100];
-      double *wanted[MOTIONS];
+      Vector wanted[1] = {{0}};
       snprintf(name, sizeof name, "%s by %s", cases[c].name, linear_word(ways[way]));
-      assert_true(vectors_make(wanted, p.domain->particles, "test", NULL));
+      assert_true(vector_create(wanted, &p.domain->particles->space, "test", NULL));
       solve_densely(&p, wanted);
       begin(&p, ways[way]);
       const LinearRecord record = solve(&p, 1e-12);
@@ -203,14 +203,9 @@ static void answers_are_those_of_a_dense_solution(void **state)
       assert_false(record.indefinite);
       assert_false(record.unsuited);
       assert_same_answer(&p, wanted, 1e-9, name);
-      vectors_free(wanted);
+      vector_destroy(wanted);
       forget(&p);
     }
-}
-
-static double product(const Problem *p, double *const a[MOTIONS], double *const b[MOTIONS])
-{
-  return unknowns_work(&p->solver.unknowns, a, b);
 }
 
 /** Else conjugate gradients do not come to the solution. */
@@ -220,10 +215,10 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
   for (int c = 0; c < CASES; ++c) {
     Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), 0);
     Preconditioner m = {0};
-    double *x[MOTIONS], *y[MOTIONS], *mx[MOTIONS], *my[MOTIONS];
+    Vector x[1] = {{0}}, y[1] = {{0}}, mx[1] = {{0}}, my[1] = {{0}};
     const Particles *q = p.domain->particles;
-    assert_true(vectors_make(x, q, "test", NULL) && vectors_make(y, q, "test", NULL));
-    assert_true(vectors_make(mx, q, "test", NULL) && vectors_make(my, q, "test", NULL));
+    assert_true(vector_create(x, &q->space, "test", NULL) && vector_create(y, &q->space, "test", NULL));
+    assert_true(vector_create(mx, &q->space, "test", NULL) && vector_create(my, &q->space, "test", NULL));
     assert_int_equal(preconditioner_create(&m, p.domain, false, NULL), 0);
     assert_int_equal(preconditioner_prepare(&m, &p.solver, x, y, NULL), 0);
     assert_true(m.is_symmetric);
@@ -234,12 +229,12 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
       unknowns_clear_rest(&p.solver.unknowns, y);
       preconditioner_apply(&m, &p.solver, x, mx);
       preconditioner_apply(&m, &p.solver, y, my);
-      const double size = sqrt(product(&p, x, mx) * product(&p, y, my));
-      assert_true(product(&p, x, mx) > 0);
-      assert_near(product(&p, x, my), product(&p, y, mx), 1e-12 * size);
+      const double size = sqrt(vector_inner(x, mx, 1) * vector_inner(y, my, 1));
+      assert_true(vector_inner(x, mx, 1) > 0);
+      assert_near(vector_inner(x, my, 1), vector_inner(y, mx, 1), 1e-12 * size);
     }
     preconditioner_destroy(&m);
-    vectors_free(x), vectors_free(y), vectors_free(mx), vectors_free(my);
+    vector_destroy(x), vector_destroy(y), vector_destroy(mx), vector_destroy(my);
     forget(&p);
   }
 }
@@ -258,22 +253,23 @@ static void random_signs_tell_the_diagonal(void **state)
   (void)state;
   Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
   Preconditioner m = {0};
-  double *v[MOTIONS], *kv[MOTIONS], told[2] = {0}, found[2] = {0};
+  Vector v[1] = {{0}}, kv[1] = {{0}};
+  double told[2] = {0}, found[2] = {0};
   const int64_t places = p.domain->particles->places;
   assert_true(p.domain->batch_count > 4);
-  assert_true(vectors_make(v, p.domain->particles, "test", NULL) &&
-              vectors_make(kv, p.domain->particles, "test", NULL));
+  assert_true(vector_create(v, &p.domain->particles->space, "test", NULL) &&
+              vector_create(kv, &p.domain->particles->space, "test", NULL));
   assert_int_equal(preconditioner_create(&m, p.domain, false, NULL), 0);
   assert_int_equal(preconditioner_prepare(&m, &p.solver, v, kv, NULL), 0);
   for (int64_t i = 0; i < places; i += 17) {
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 3; ++j) memset(v[j], 0, sizeof(double) * (size_t)places);
-      v[k][i] = 1;
+      vector_clear(v);
+      v->row[k][i] = 1;
       unknowns_clear_rest(&p.solver.unknowns, v);
-      if (v[k][i] != 1) continue; /* it is held */
+      if (v->row[k][i] != 1) continue; /* it is held */
       linear_solver_apply(&p.solver, v, kv);
-      sum += kv[k][i] / 3;
+      sum += kv->row[k][i] / 3;
     }
     if (sum == 0) continue;
     told[i > places / 2] += m.diagonal[i];
@@ -285,7 +281,7 @@ static void random_signs_tell_the_diagonal(void **state)
     assert_near(told[half] / found[half], 1, 0.2);
   }
   preconditioner_destroy(&m);
-  vectors_free(v), vectors_free(kv);
+  vector_destroy(v), vector_destroy(kv);
   forget(&p);
 }
 
@@ -295,7 +291,7 @@ static void load_far_face(Problem *p, int n)
   const Particles *q = p->domain->particles;
   for (int64_t at = 0; at < q->count; ++at) {
     const int32_t i = q->place_of[at];
-    for (int k = 0; k < 3; ++k) p->f[k][i] = q->position[0][i] > 0.1 * (n - 3) ? (k == 0) + 0.3 * (k == 1) : 0;
+    for (int k = 0; k < 3; ++k) p->f->row[k][i] = q->position[0][i] > 0.1 * (n - 3) ? (k == 0) + 0.3 * (k == 1) : 0;
   }
 }
 
@@ -399,7 +395,7 @@ static void no_kind_of_body_takes_more_products_than_it_did(void **state)
       const int32_t i = q->place_of[n];
       const double along = q->position[0][i] / q->position[0][q->place_of[q->count - 1]];
       for (int k = 0; k < p.domain->body.dimensions; ++k)
-        p.f[k][i] = k == 0 ? along * along : k == 1 ? 0.3 : -0.2 * along;
+        p.f->row[k][i] = k == 0 ? along * along : k == 1 ? 0.3 : -0.2 * along;
     }
     unknowns_gather(&p.solver.unknowns, p.f);
     begin(&p, strstr(of[c].deck, "held: all") ? LINEAR_residuals : LINEAR_gradients);
@@ -422,15 +418,15 @@ static void answers_have_the_same_bits_for_any_number_of_threads(void **state)
   for (int way = 0; way < 2; ++way) {
     Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
     const size_t bytes = sizeof(double) * (size_t)p.domain->particles->places;
-    double *first[MOTIONS];
-    assert_true(vectors_make(first, p.domain->particles, "test", NULL));
+    Vector first[1] = {{0}};
+    assert_true(vector_create(first, &p.domain->particles->space, "test", NULL));
     for (int threads = 1; threads <= 3; ++threads) {
       Team *team = team_create(threads, NULL), *before = team_use(team);
       begin(&p, ways[way]);
       solve(&p, 1e-8);
       for (int k = 0; k < 3; ++k) {
-        if (threads == 1) memcpy(first[k], p.v[k], bytes);
-        assert_memory_equal(first[k], p.v[k], bytes);
+        if (threads == 1) memcpy(first->row[k], p.v->row[k], bytes);
+        assert_memory_equal(first->row[k], p.v->row[k], bytes);
       }
       p.solver.type->destroy(&p.solver);
       p.solver.type = NULL;
@@ -438,7 +434,7 @@ static void answers_have_the_same_bits_for_any_number_of_threads(void **state)
       team_use(before);
       team_destroy(&team);
     }
-    vectors_free(first);
+    vector_destroy(first);
     forget(&p);
   }
 }
@@ -464,13 +460,13 @@ static void broken_bodies_are_solved(void **state)
     if (d->regions->type->renew) d->regions->type->renew(d->regions->formulation, s);
   assert_int_equal(domain_linearise(d, NULL, NULL), 0);
   load_far_face(&p, 10);
-  for (int k = 0; k < 3; ++k) p.f[k][lost] = 0;
+  for (int k = 0; k < 3; ++k) p.f->row[k][lost] = 0;
   begin(&p, LINEAR_gradients);
   const LinearRecord record = solve(&p, 1e-8);
   assert_true(record.residual <= 1e-8);
   assert_false(record.indefinite);
   assert_true(record.iterations <= 80);
-  for (int k = 0; k < 3; ++k) assert_near(p.v[k][lost], 0, 0);
+  for (int k = 0; k < 3; ++k) assert_near(p.v->row[k][lost], 0, 0);
   forget(&p);
 }
 
@@ -486,11 +482,11 @@ static void broken_bodies_are_solved(void **state)
 static void strain(const Problem *p, double even, double opening)
 {
   const Particles *q = p->domain->particles;
-  fill_randomly(q, q->displacement, 1e-5 * (even + opening), 9);
+  fill_randomly(q, &q->displacement, 1e-5 * (even + opening), 9);
   for (int64_t n = 0; n < q->count; ++n) {
     const int32_t i = q->place_of[n];
     const double x = q->position[0][i], y = q->position[1][i];
-    q->displacement[0][i] += even * (x + y) + (x > 0.4 ? opening : 0);
+    q->displacement.row[0][i] += even * (x + y) + (x > 0.4 ? opening : 0);
   }
   assert_int_equal(domain_linearise(p->domain, NULL, NULL), 0);
 }
@@ -519,13 +515,13 @@ static void the_way_follows_the_stiffness(void **state)
     print_message("%s: %lld products, residual %g\n", of[c].name, (long long)record.iterations, record.residual);
     assert_true(record.residual <= 1e-8);
     assert_int_equal(record.indefinite, of[c].indefinite);
-    for (int k = 0; k < 3; ++k) memcpy(p.kv[k], p.v[k], sizeof(double) * (size_t)p.domain->particles->places);
-    double *check[MOTIONS];
-    assert_true(vectors_make(check, p.domain->particles, "test", NULL));
+    vector_copy(p.kv, p.v);
+    Vector check[1] = {{0}};
+    assert_true(vector_create(check, &p.domain->particles->space, "test", NULL));
     linear_solver_apply(&p.solver, p.kv, check);
-    vectors_combine(p.domain, 1, check, -1, p.f);
-    assert_true(product(&p, check, check) <= 1.01e-16 * product(&p, p.f, p.f));
-    vectors_free(check);
+    vector_combine(1, check, -1, p.f);
+    assert_true(vector_inner(check, check, 1) <= 1.01e-16 * vector_inner(p.f, p.f, 1));
+    vector_destroy(check);
     forget(&p);
   }
 }
@@ -631,8 +627,8 @@ static void the_matrix_is_the_stiffness(void **state)
   for (int c = 0; c < CASES; ++c) {
     Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), 10);
     Matrix m = {0};
-    double *const *u = p.domain->particles->displacement;
-    fill_randomly(p.domain->particles, u, 1e-3, 5);
+    double *const *u = p.domain->particles->displacement.row;
+    fill_randomly(p.domain->particles, &p.domain->particles->displacement, 1e-3, 5);
     for (int k = 0; k < 3; ++k) /* nothing leads out of a plane */
       if (p.solver.unknowns.flat[k]) memset(u[k], 0, sizeof(double) * (size_t)p.domain->particles->places);
     assert_int_equal(domain_linearise(p.domain, NULL, NULL), 0);

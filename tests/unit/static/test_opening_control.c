@@ -46,11 +46,11 @@ static void a_factor_that_is_found_is_that_which_would_be_given(void **state)
     step(given, INT64_MAX);
     const Particles *p = found->domain.particles, *q = given->domain.particles;
     const int32_t measured = body_nearest(&found->domain.body, (double[3]){0.55, 0.05, 0});
-    const double reached = (2 * p->displacement[0][measured] + p->displacement[1][measured]) / sqrt(5);
+    const double reached = (2 * p->displacement.row[0][measured] + p->displacement.row[1][measured]) / sqrt(5);
     assert_true(fabs(reached - 0.003) < 1e-13);
     for (int k = 0; k < 2; ++k)
       for (int64_t i = 0; i < p->count; ++i)
-        assert_true(fabs(p->displacement[k][p->place_of[i]] - q->displacement[k][q->place_of[i]]) < 1e-10);
+        assert_true(fabs(p->displacement.row[k][p->place_of[i]] - q->displacement.row[k][q->place_of[i]]) < 1e-10);
     breccia_model_destroy(&found);
     breccia_model_destroy(&given);
   }
@@ -76,7 +76,7 @@ static void what_is_controlled_counts_from_where_displacements_do(void **state)
     const Particles *p = m->domain.particles;
     const int32_t end = body_nearest(&m->domain.body, (double[3]){0.75, 0.25, 0});
     step(m, 1);
-    const double first = p->displacement[0][end];
+    const double first = p->displacement.row[0][end];
     assert_true(first > 1e-4 && first < 0.0025);
     step(m, INT64_MAX);
     double reached = 0;
@@ -84,7 +84,7 @@ static void what_is_controlled_counts_from_where_displacements_do(void **state)
     for (int64_t i = 0; i < p->count; ++i) { /* of the face, or of the end of the line */
       const int32_t at = p->place_of[i];
       if (n % 2 ? at != end : p->position[0][at] < 0.7) continue;
-      reached += p->displacement[0][at] - (zero ? p->zero[0][at] : 0);
+      reached += p->displacement.row[0][at] - (zero ? p->zero[0][at] : 0);
       ++count;
     }
     assert_true(fabs(reached / count - 0.003) < 1e-9);
@@ -150,7 +150,7 @@ static double pull_of(const breccia_model *model)
   double force = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    if (p->position[0][i] > 0.45) force -= p->volume[i] * p->internal[0][i];
+    if (p->position[0][i] > 0.45) force -= p->volume[i] * p->internal.row[0][i];
   }
   return force;
 }
@@ -173,11 +173,11 @@ static void a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy(void **
     while (!solver_is_done(&model->solver)) {
       step(model, 1);
       const double part = model->solver.clock.time / model->solver.clock.end_time;
-      assert_true(fabs(p->displacement[0][right] - p->displacement[0][left] - part * 0.12e-3) < 1e-12);
+      assert_true(fabs(p->displacement.row[0][right] - p->displacement.row[0][left] - part * 0.12e-3) < 1e-12);
       force = pull_of(model);
-      if (force > most) farthest = p->displacement[0][end];
+      if (force > most) farthest = p->displacement.row[0][end];
       most = larger_of(most, force);
-      back = larger_of(back, farthest - p->displacement[0][end]);
+      back = larger_of(back, farthest - p->displacement.row[0][end]);
     }
     const Energy e = solver_energy(&model->solver);
     assert_true(most > 2e3 * uncut && most < 3e3 * uncut); /* strength of the weak part and of the strong ones */
@@ -200,9 +200,9 @@ static void a_crack_is_followed_wherever_it_runs(void **state)
   do {
     step(model, 1);
     force = pull_of(model);
-    if (force > most) farthest = p->displacement[0][end];
+    if (force > most) farthest = p->displacement.row[0][end];
     most = larger_of(most, force);
-    back = larger_of(back, farthest - p->displacement[0][end]);
+    back = larger_of(back, farthest - p->displacement.row[0][end]);
   } while (force > 0.03 * most && !solver_is_done(&model->solver));
   const Energy e = solver_energy(&model->solver);
   assert_true(most > 2e3 * uncut && most < 3e3 * uncut);
@@ -330,13 +330,13 @@ static void a_torn_body_ends_the_stage(void **state)
       pull = 0;
       for (int64_t n = 0; n < p->count; ++n) {
         const int32_t i = p->place_of[n];
-        if (p->position[0][i] > 0.2) pull -= p->volume[i] * p->internal[0][i];
+        if (p->position[0][i] > 0.2) pull -= p->volume[i] * p->internal.row[0][i];
       }
       most = larger_of(most, pull);
       assert_true(pull > -1e-3 * most); /* nobody pushes */
     }
     assert_true(pull < 1e-3 * most);
-    assert_true(p->displacement[0][end] > 2e-5);
+    assert_true(p->displacement.row[0][end] > 2e-5);
     assert_true(model->solver.clock.time < 1);
     const char *words = strstr(breccia_model_warnings(model), "deck:10:44");
     assert_non_null(words);
@@ -377,7 +377,7 @@ static void arc_length_goes_round_every_corner_of_a_flat_arch(void **state)
   int turns_of_pull = 0, turns_of_end = 0, way_of_pull = 1, way_of_end = 1;
   while (!solver_is_done(&model->solver)) {
     step(model, 1);
-    const double w = -p->displacement[1][top], down = -p->displacement[1][end], pull = factor_of(model);
+    const double w = -p->displacement.row[1][top], down = -p->displacement.row[1][end], pull = factor_of(model);
     const double length = hypot(1, 0.2 - w), shape = 2 * (l0 - length) / length * (0.2 - w);
     if (stiffness == 0) {
       stiffness = pull / shape;
@@ -404,7 +404,8 @@ static void arc_length_goes_round_every_corner_of_a_flat_arch(void **state)
     breccia_model *part = model_of(ARCH);
     if (breccia_model_run(part, &run, error)) fail_msg("%s", breccia_error_text(error));
     const Particles *q = part->domain.particles;
-    if (run.restart) assert_memory_equal(q->displacement[1], p->displacement[1], sizeof(double) * (size_t)p->places);
+    if (run.restart)
+      assert_memory_equal(q->displacement.row[1], p->displacement.row[1], sizeof(double) * (size_t)p->places);
     breccia_model_destroy(&part);
   }
   snprintf(command, sizeof command, "rm -r %s", folder);

@@ -98,7 +98,7 @@ static void contact_joins_what_touches(void **state)
   const Particles *p = m->domain.particles;
   const Selection *held = &m->loading.loads[0].selection;
   double carried = 0;
-  for (int64_t n = 0; n < held->count; ++n) carried += p->volume[held->places[n]] * p->internal[0][held->places[n]];
+  for (int64_t n = 0; n < held->count; ++n) carried += p->volume[held->places[n]] * p->internal.row[0][held->places[n]];
   assert_near(carried, -2 * 0.2 * 0.5, 1e-6);
   assert_balanced(m, 1e-4);
   breccia_model_destroy(&m);
@@ -129,7 +129,7 @@ static void a_crack_that_cuts_a_body_is_named(void **state)
                       "x as a whole|go on with a stage of 'explicit'");
     const Particles *p = m->domain.particles;
     for (int64_t n = 0; n < p->count; ++n)
-      for (int axis = 0; axis < 2; ++axis) assert_true(fabs(p->displacement[axis][p->place_of[n]]) < 0.1);
+      for (int axis = 0; axis < 2; ++axis) assert_true(fabs(p->displacement.row[axis][p->place_of[n]]) < 0.1);
     breccia_model_destroy(&m);
   }
 }
@@ -214,7 +214,7 @@ static void springs_hold_along_their_direction(void **state)
                                 held[k]);
     step_surely(m, INT64_MAX);
     const Particles *p = m->domain.particles;
-    assert_near(p->displacement[0][p->place_of[0]], 1e-3, 1e-9);
+    assert_near(p->displacement.row[0][p->place_of[0]], 1e-3, 1e-9);
     breccia_model_destroy(&m);
   }
   static const struct {

@@ -88,10 +88,11 @@ static void it_finds_the_rest_that_newton_finds(void **state)
     double most = 0, largest = 0, force = 0, strongest = 0;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
-        most = larger_of(most, fabs(p->displacement[k][i] - q->displacement[k][i]));
-        largest = larger_of(largest, fabs(p->displacement[k][i]));
-        force = larger_of(force, p->volume[i] * fabs(p->internal[k][i] - q->internal[k][i])); /* reactions among them */
-        strongest = larger_of(strongest, p->volume[i] * fabs(p->internal[k][i]));
+        most = larger_of(most, fabs(p->displacement.row[k][i] - q->displacement.row[k][i]));
+        largest = larger_of(largest, fabs(p->displacement.row[k][i]));
+        force = larger_of(force, p->volume[i] *
+                                     fabs(p->internal.row[k][i] - q->internal.row[k][i])); /* reactions among them */
+        strongest = larger_of(strongest, p->volume[i] * fabs(p->internal.row[k][i]));
       }
     if (!(most <= 1e-5 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
     if (!(force <= 1e-5 * strongest)) fail_msg("%s: forces differ by %g of %g", cases[c].name, force, strongest);
@@ -116,10 +117,10 @@ static void an_unloaded_body_is_at_rest_again(void **state)
   const Particles *p = model->domain.particles;
   double bent = 0, left = 0;
   step_surely(model, 2);
-  for (int64_t i = 0; i < p->places; ++i) bent = larger_of(bent, fabs(p->displacement[2][i]));
+  for (int64_t i = 0; i < p->places; ++i) bent = larger_of(bent, fabs(p->displacement.row[2][i]));
   step_surely(model, INT64_MAX);
   assert_true(model->solver.clock.time == 1);
-  for (int64_t i = 0; i < p->places; ++i) left = larger_of(left, fabs(p->displacement[2][i]));
+  for (int64_t i = 0; i < p->places; ++i) left = larger_of(left, fabs(p->displacement.row[2][i]));
   assert_true(bent > 1e-3);
   assert_near(left, 0, 1e-5 * bent);
   breccia_model_destroy(&model);
@@ -140,7 +141,7 @@ static void it_goes_on_where_a_bar_gives_way(void **state)
   const Energy energy = solver_energy(&model->solver);
   double held = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    if (p->position[0][p->place_of[n]] > 2.05) held += p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
+    if (p->position[0][p->place_of[n]] > 2.05) held += p->volume[p->place_of[n]] * p->internal.row[0][p->place_of[n]];
   assert_near(held, 0, 1e-3); /* of a strength of 3000 kPa x 1 m x 0.2 m */
   assert_true(energy.dissipated > 0.01);
   assert_near(energy.dissipated, energy.external, 1e-3 * energy.external);
@@ -190,8 +191,8 @@ static void beyond_its_strength_a_bar_stays_as_it_was(void **state)
   double pull = 0, carried = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    pull += p->volume[i] * p->external[0][i];
-    if (p->position[0][i] < 0.1) carried += p->volume[i] * p->internal[0][i];
+    pull += p->volume[i] * p->external.row[0][i];
+    if (p->position[0][i] < 0.1) carried += p->volume[i] * p->internal.row[0][i];
   }
   assert_near(pull, 12 * model->solver.clock.time * 0.09, 1e-9);
   assert_near(carried, pull, 1e-6 * pull);
@@ -256,7 +257,7 @@ static void a_restart_goes_on_to_the_same_bits(void **state)
   }
   const Particles *p = whole->domain.particles, *q = parts[1]->domain.particles;
   for (int k = 0; k < 3; ++k)
-    assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
+    assert_memory_equal(p->displacement.row[k], q->displacement.row[k], sizeof(double) * (size_t)p->places);
   assert_int_equal(breccia_model_broken_bonds(whole), breccia_model_broken_bonds(parts[1]));
   for (int k = 0; k < 2; ++k) breccia_model_destroy(&parts[k]);
   breccia_model_destroy(&whole);

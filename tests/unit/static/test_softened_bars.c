@@ -35,7 +35,7 @@ static double drawn_with(const breccia_model *m)
   const Load *end = &m->loading.loads[1];
   double sum = 0;
   for (int64_t n = 0; n < end->selection.count; ++n)
-    sum -= p->internal[0][end->selection.places[n]] * p->volume[end->selection.places[n]];
+    sum -= p->internal.row[0][end->selection.places[n]] * p->volume[end->selection.places[n]];
   return sum;
 }
 

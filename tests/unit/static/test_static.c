@@ -7,7 +7,6 @@
 #include "solver/matrix.h"
 #include "solver/newton.h"
 #include "solver/rest.h"
-#include "solver/vectors.h"
 
 static void run_all(breccia_model *model)
 {
@@ -70,10 +69,10 @@ static const struct Case {
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
-static void fill_randomly(const Particles *p, double *const v[MOTIONS], uint64_t seed)
+static void fill_randomly(const Particles *p, const Vector *v, uint64_t seed)
 {
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+  for (int k = 0; k < p->space.rows; ++k)
+    for (int64_t n = 0; n < p->count; ++n) v->row[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
 }
 
 static void gathering_is_spreading_transposed(void **state)
@@ -84,21 +83,21 @@ static void gathering_is_spreading_transposed(void **state)
     const Particles *p = model->domain.particles;
     const Unknowns u = unknowns_of(&model->domain, &model->loading);
     const bool mirrored = strstr(cases[c].deck, "support") != NULL; /* forces on images are dropped */
-    double *v[MOTIONS], *f[MOTIONS], *q[MOTIONS];
-    assert_true(vectors_make(v, p, "test", NULL)), assert_true(vectors_make(f, p, "test", NULL)),
-        assert_true(vectors_make(q, p, "test", NULL));
+    Vector v[1] = {{0}}, f[1] = {{0}}, q[1] = {{0}};
+    assert_true(vector_create(v, &p->space, "test", NULL)), assert_true(vector_create(f, &p->space, "test", NULL)),
+        assert_true(vector_create(q, &p->space, "test", NULL));
     fill_randomly(p, q, 1);
     fill_randomly(p, f, 2);
     unknowns_clear_rest(&u, q);
-    for (int k = 0; k < p->motions; ++k) memcpy(v[k], q[k], sizeof(double) * (size_t)p->places);
+    vector_copy(v, q);
     unknowns_spread(&u, NAN, v);
-    const double there = unknowns_work(&u, f, v);
+    const double there = vector_inner(f, v, 1);
     unknowns_gather(&u, f);
-    if (!mirrored) assert_near(unknowns_work(&u, f, q), there, 1e-12 * (1 + fabs(there)));
+    if (!mirrored) assert_near(vector_inner(f, q, 1), there, 1e-12 * (1 + fabs(there)));
     unknowns_clear_rest(&u, v); /* what was spread from is there still */
-    for (int k = 0; k < p->motions; ++k)
-      for (int64_t i = 0; i < p->places; ++i) assert_near(v[k][i], q[k][i], 1e-15);
-    vectors_free(v), vectors_free(f), vectors_free(q);
+    for (int k = 0; k < p->space.rows; ++k)
+      for (int64_t i = 0; i < p->places; ++i) assert_near(v->row[k][i], q->row[k][i], 1e-15);
+    vector_destroy(v), vector_destroy(f), vector_destroy(q);
     breccia_model_destroy(&model);
   }
 }
@@ -116,12 +115,13 @@ static void the_matrix_does_what_a_linearised_step_does(void **state)
                            .stiffness_share = 0.3,
                            .mass_factor = 7};
     Matrix m = {0};
-    double *v[MOTIONS], *kv[MOTIONS], *x, *y;
-    assert_true(vectors_make(v, p, "test", NULL)), assert_true(vectors_make(kv, p, "test", NULL));
-    fill_randomly(p, p->displacement, 5);
-    for (int k = 0; k < p->motions; ++k)
+    Vector v[1] = {{0}}, kv[1] = {{0}};
+    double *x, *y;
+    assert_true(vector_create(v, &p->space, "test", NULL)), assert_true(vector_create(kv, &p->space, "test", NULL));
+    fill_randomly(p, &p->displacement, 5);
+    for (int k = 0; k < p->space.rows; ++k)
       for (int64_t i = 0; i < p->places; ++i)
-        p->displacement[k][i] *= k < d->body.dimensions || k >= ROTATION ? 0.01 : 0;
+        p->displacement.row[k][i] *= k < d->body.dimensions || k >= p->space.rotation ? 0.01 : 0;
     assert_int_equal(domain_linearise(d, NULL, NULL), 0);
     assert_int_equal(matrix_create(&m, &solver.unknowns, NULL), 0);
     assert_int_equal(matrix_fill(&m, &solver.unknowns, solver.stiffness_share, solver.mass_factor, NULL), 0);
@@ -144,7 +144,7 @@ static void the_matrix_does_what_a_linearised_step_does(void **state)
     assert_true(largest > 0);
     free(x), free(y);
     matrix_destroy(&m);
-    vectors_free(v), vectors_free(kv);
+    vector_destroy(v), vector_destroy(kv);
     breccia_model_destroy(&model);
   }
 }
@@ -154,7 +154,8 @@ static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **stat
   (void)state;
   static const char *const ways[] = {"direct", "conjugate gradients"};
   for (int c = 0; c < CASES; ++c) {
-    double *found[2][MOTIONS], largest = 0, most = 0;
+    Vector found[2] = {{0}};
+    double largest = 0, most = 0;
     int64_t places = 0;
     for (int way = 0; way < 2; ++way) {
       const bool turns = strstr(cases[c].deck, "micropolar"); /* in space: its stiffness is not symmetric */
@@ -163,14 +164,14 @@ static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **stat
       const Particles *p = model->domain.particles;
       run_all(model);
       places = p->places;
-      assert_true(vectors_make(found[way], p, "test", NULL));
+      assert_true(vector_create(&found[way], &p->space, "test", NULL));
       double forces[3] = {0}, size = 0;
       for (int k = 0; k < 3; ++k)
         for (int64_t i = 0; i < p->places; ++i) {
-          found[way][k][i] = p->displacement[k][i];
-          largest = larger_of(largest, fabs(p->displacement[k][i]));
-          forces[k] += p->volume[i] * p->internal[k][i];
-          size = larger_of(size, fabs(p->volume[i] * p->internal[k][i]));
+          found[way].row[k][i] = p->displacement.row[k][i];
+          largest = larger_of(largest, fabs(p->displacement.row[k][i]));
+          forces[k] += p->volume[i] * p->internal.row[k][i];
+          size = larger_of(size, fabs(p->volume[i] * p->internal.row[k][i]));
         }
       for (int k = 0; k < 3; ++k) assert_near(forces[k], 0, 1e-10 * size * 100);
       assert_balanced(model, 2e-3); /* two increments, and strains that are not quite linear */
@@ -178,10 +179,10 @@ static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **stat
       breccia_model_destroy(&model);
     }
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < places; ++i) most = larger_of(most, fabs(found[0][k][i] - found[1][k][i]));
+      for (int64_t i = 0; i < places; ++i) most = larger_of(most, fabs(found[0].row[k][i] - found[1].row[k][i]));
     if (!(most <= 1e-7 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
     assert_true(largest > 0);
-    vectors_free(found[0]), vectors_free(found[1]);
+    vector_destroy(&found[0]), vector_destroy(&found[1]);
   }
 }
 
@@ -388,8 +389,8 @@ static void a_bar_that_flows_carries_its_strength_and_no_more(void **state)
   double pull = 0, carried = 0;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    pull += p->volume[i] * p->external[0][i];
-    if (p->position[0][i] < 0.1) carried += p->volume[i] * p->internal[0][i];
+    pull += p->volume[i] * p->external.row[0][i];
+    if (p->position[0][i] < 0.1) carried += p->volume[i] * p->internal.row[0][i];
   }
   assert_near(pull, 12 * model->solver.clock.time * 0.09, 1e-9);
   assert_near(carried, pull, 1e-6 * pull);
@@ -478,7 +479,7 @@ static void a_body_that_is_carried_away_finds_no_equilibrium(void **state)
   step_must_fail(model, "no equilibrium beyond time 0.|, with increments cut to |; the body may fail at this load: go "
                         "on with a stage of 'explicit', or look at the loads and at the last pictures");
   const Particles *p = model->domain.particles;
-  for (int64_t i = 0; i < p->places; ++i) assert_true(fabs(p->displacement[0][i]) < 1e4);
+  for (int64_t i = 0; i < p->places; ++i) assert_true(fabs(p->displacement.row[0][i]) < 1e4);
   breccia_model_destroy(&model);
 }
 
@@ -500,8 +501,8 @@ static void a_body_that_is_moved_as_a_whole_is_at_rest(void **state)
     assert_true(solver_is_done(&m->solver));
     const Particles *p = m->domain.particles;
     for (int64_t n = 0; n < p->count; ++n) {
-      assert_near(p->displacement[0][p->place_of[n]], 0.03, 1e-12);
-      assert_near(p->displacement[1][p->place_of[n]], -0.04, 1e-12);
+      assert_near(p->displacement.row[0][p->place_of[n]], 0.03, 1e-12);
+      assert_near(p->displacement.row[1][p->place_of[n]], -0.04, 1e-12);
     }
     assert_true(solver_energy(&m->solver).imbalance < 0.1);
     Rest rest;
@@ -566,7 +567,7 @@ static void the_last_load_is_taken_away_in_few_iterations(void **state)
         laws[k]);
     step_surely(m, INT64_MAX);
     const Particles *p = m->domain.particles;
-    for (int64_t n = 0; n < p->count; ++n) assert_near(p->displacement[0][p->place_of[n]], 0, 1e-11);
+    for (int64_t n = 0; n < p->count; ++n) assert_near(p->displacement.row[0][p->place_of[n]], 0, 1e-11);
     breccia_model_destroy(&m);
   }
 }
@@ -614,8 +615,8 @@ static void a_block_that_a_later_stage_leaves_loose_is_refused(void **state)
   free(words);
   breccia_model *m = model_of(deck, "");
   run_all(m);
-  assert_true(m->domain.particles->displacement[0][particles_nearest(m->domain.particles, (double[]){2.55, 0.3, 0})] >
-              0);
+  assert_true(
+      m->domain.particles->displacement.row[0][particles_nearest(m->domain.particles, (double[]){2.55, 0.3, 0})] > 0);
   breccia_model_destroy(&m);
 }
 
@@ -649,18 +650,18 @@ static void motions_add_up_until_bonds_are_judged(void **state)
   const double tenth = 0.1 * 0.01 * 0.1; /* of the elongation at which a shortest bond breaks */
   const int32_t pulled = body_nearest(&d->body, (double[3]){0.75, 0.55, 0});
   Increment increment = {0};
-  double *moved[MOTIONS];
-  assert_true(vectors_make(moved, p, "test", NULL));
+  Vector moved[1] = {{0}};
+  assert_true(vector_create(moved, &p->space, "test", NULL));
   assert_int_equal(increment_create(&increment, d, &model->loading, NULL), 0);
-  moved[0][pulled] = tenth;
+  moved->row[0][pulled] = tenth;
   for (int k = 0; k < 12; ++k) {
     if (k == 4) assert_int_equal(increment_break(&increment, &model->solver.clock, 0), 0);
-    p->displacement[0][pulled] += tenth;
+    p->displacement.row[0][pulled] += tenth;
     increment_accept(&increment, moved);
   }
   assert_true(increment_break(&increment, &model->solver.clock, 0) > 0);
   increment_destroy(&increment);
-  vectors_free(moved);
+  vector_destroy(moved);
   breccia_model_destroy(&model);
 }
 

@@ -39,7 +39,7 @@ static bool exceeds(const Failure *failure, const Family *family, int64_t slice,
   const int64_t place = slice * SLICE + lane;
   double square = 0;
   for (int k = 0; k < 3; ++k)
-    square += pow(bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place], 2);
+    square += pow(bond->xi[k] + p->displacement.row[k][bond->neighbour] - p->displacement.row[k][place], 2);
   return sqrt(square) - bond->length > failure_limit(failure, place, bond->neighbour);
 }
 

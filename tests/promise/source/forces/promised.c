@@ -32,11 +32,11 @@ static int create(const void *spec, const ForcesParts *parts, void **forces, Err
   return BRECCIA_OK;
 }
 
-static void resist(void *forces)
+static void resist(void *forces, double *const *displacement, double *const *internal)
 {
   const Promised *p = forces;
   TEAM_FOR (place, p->particles->places)
-    for (int k = 0; k < 3; ++k) p->particles->internal[k][place] -= p->stiffness * p->particles->displacement[k][place];
+    for (int k = 0; k < 3; ++k) internal[k][place] -= p->stiffness * displacement[k][place];
 }
 
 static double energy(void *forces)
@@ -45,8 +45,8 @@ static double energy(void *forces)
   double sum = 0;
   for (int64_t place = 0; place < p->particles->places; ++place)
     for (int k = 0; k < 3; ++k)
-      sum += p->stiffness * p->particles->volume[place] * p->particles->displacement[k][place] *
-             p->particles->displacement[k][place] / 2;
+      sum += p->stiffness * p->particles->volume[place] * p->particles->displacement.row[k][place] *
+             p->particles->displacement.row[k][place] / 2;
   return sum;
 }
 

@@ -108,7 +108,7 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   const Bond bond = family_bond(p->parts.family, slice, slot, lane);
   double y[3];
   (void)time;
-  const double stretch = stretch_of(p->parts.particles->displacement, place, &bond, y);
+  const double stretch = stretch_of(p->parts.particles->displacement.row, place, &bond, y);
   *e = (StoredEnergy){.stored = p->modulus * stretch * stretch * bond.length / 2 * p->parts.particles->volume[place] *
                                 bond.weight};
   e->received = e->stored;

@@ -74,7 +74,7 @@ static int advance(Solver *solver, Text *warning, Error *error)
   Clock *clock = &solver->clock;
   (void)warning, (void)error;
   for (int64_t place = 0; place < p->places; ++place)
-    for (int k = 0; k < 3; ++k) p->displacement[k][place] += clock->time_step * p->velocity[k][place];
+    for (int k = 0; k < 3; ++k) p->displacement.row[k][place] += clock->time_step * p->velocity.row[k][place];
   clock->time += clock->time_step;
   clock->ended = ++clock->step >= clock->stage_last;
   return BRECCIA_OK;
