@@ -83,7 +83,7 @@ static double measure(const Failure *failure, const Family *f, int64_t slice, in
 {
   const SectionLoad load = section_load(failure, f, slice, slot, bond, lane);
   *limit = load.limit;
-  *quantity = load.quantity;
+  *quantity = (int)load.quantity;
   return load.value;
 }
 

@@ -543,7 +543,7 @@ LANES_INLINE void moments_hooke_slice(const Hybrid *h, const Sweep *sweep, int64
 }
 
 BRECCIA_CLONES
-void hybrid_moments_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice)
+static void moments_elastic(const Hybrid *h, const Sweep *sweep, int64_t slice)
 {
   const bool linear = sweep->linearised_at != NULL;
   if (h->finite && linear)
@@ -552,6 +552,11 @@ void hybrid_moments_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice)
     moments_hooke_slice(h, sweep, slice, true, false);
   else
     moments_hooke_slice(h, sweep, slice, false, false);
+}
+
+void hybrid_moments_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice)
+{
+  moments_elastic(h, sweep, slice);
 }
 
 /** Finds the listed rows of a batch of rows. */
@@ -564,7 +569,7 @@ static void moments_range(const Hybrid *h, const Sweep *sweep, int64_t *from, in
 }
 
 BRECCIA_CLONES
-void hybrid_moments_deform(const Hybrid *h, const Sweep *sweep)
+static void moments_deform(const Hybrid *h, const Sweep *sweep)
 {
   int64_t from, end;
   moments_range(h, sweep, &from, &end);
@@ -592,8 +597,13 @@ void hybrid_moments_deform(const Hybrid *h, const Sweep *sweep)
   }
 }
 
+void hybrid_moments_deform(const Hybrid *h, const Sweep *sweep)
+{
+  moments_deform(h, sweep);
+}
+
 BRECCIA_CLONES
-void hybrid_moments_respond(const Hybrid *h, const Sweep *sweep)
+static void moments_respond(const Hybrid *h, const Sweep *sweep)
 {
   int64_t from, end;
   moments_range(h, sweep, &from, &end);
@@ -620,4 +630,9 @@ void hybrid_moments_respond(const Hybrid *h, const Sweep *sweep)
     moments_exert(&s, &rows, p, &forces);
   }
   moments_add_forces(&s, &forces);
+}
+
+void hybrid_moments_respond(const Hybrid *h, const Sweep *sweep)
+{
+  moments_respond(h, sweep);
 }

@@ -365,8 +365,8 @@ static void check_upwards(breccia_model *model, const Load *load)
   const double size = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2]);
   if (!(pull[up] > 0.5 * size) || !(loads_held_height(model, up) < (body->low[up] + body->high[up]) / 2)) return;
   plausibility_say(model, load->node,
-                   "gravity: it points upwards, along +%c, away from what holds the body, which hangs on it; give a "
-                   "negative number if %c counts upwards",
+                   "gravity: it points upwards, along +%c, away from what holds the body; give a negative number if "
+                   "%c counts upwards",
                    "xyz"[up], "xyz"[up]);
 }
 

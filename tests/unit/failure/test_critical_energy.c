@@ -512,6 +512,12 @@ static double suspect_all(const Failure *failure, const Family *family, int64_t 
   return 0;
 }
 
+static bool broke_alike(const BrokenBond *one, const BrokenBond *other)
+{
+  return one->step == other->step && one->time == other->time && one->a == other->a && one->b == other->b &&
+         one->cause == other->cause && one->value == other->value && one->limit == other->limit;
+}
+
 static void the_sweep_misses_no_bond(void **state)
 {
   (void)state;
@@ -536,9 +542,8 @@ static void the_sweep_misses_no_bond(void **state)
         }
         free(before);
         assert_int_equal(m->domain.broken_count, plain->domain.broken_count);
-        if (m->domain.broken_count)
-          assert_memory_equal(m->domain.broken, plain->domain.broken,
-                              sizeof *m->domain.broken * (size_t)m->domain.broken_count);
+        for (int64_t b = 0; b < m->domain.broken_count; ++b)
+          assert_true(broke_alike(&m->domain.broken[b], &plain->domain.broken[b]));
       }
       print_message("%s, %s: %lld bonds broken, %.2f of all slices looked at before\n", bodies[n].formulation,
                     plane ? "plane" : "space", (long long)m->domain.broken_count, (double)looks / (double)slices);
