@@ -11,13 +11,13 @@
 
 static breccia_model *bodies(const char *one, const char *other, const char *peridynamics)
 {
-  return model_of("units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}, b: {%s}}\n"
-                  "peridynamics: {formulation: bond-based%s}\nbody:\n"
-                  "  left: {material: a, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.11, 0.07, 0.05]}}}\n"
-                  "  right: {material: b, spacing: 0.005, shape: {box: {from: [0.11, 0, 0], to: [0.14, 0.07, 0.05]}}}\n"
-                  "cracks: [{cut: {line: [[0.055, -1], [0.055, 0.02]]}}]\nfailure: {critical stretch: 1}\n"
-                  "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
-                  one, other, peridynamics);
+  return model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}, b: {%s}}\n"
+      "peridynamics: {formulation: bond-based%s}\nbody:\n"
+      "  left: {material: a, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.11, 0.07, 0.05]}}}\n"
+      "  right: {material: b, spacing: 0.005, shape: {box: {from: [0.11, 0, 0], to: [0.14, 0.07, 0.05]}}}\n"
+      "cracks: [{cut: {line: [[0.055, -1], [0.055, 0.02]]}}]\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+      one, other, peridynamics);
 }
 
 static void shake(breccia_model *model, double amplitude)
@@ -45,7 +45,9 @@ static double largest_difference(const breccia_model *a, const breccia_model *b,
 static void points_below_their_strength_pull_like_springs(void **state)
 {
   (void)state;
-  const char *const settings[] = {"", ", influence: conical, volume correction: partial, calibration: continuum"};
+  const char *const settings[] = {"}\nfailure: {critical stretch: 1",
+                                  ", influence: conical, volume correction: partial, calibration: continuum}\n"
+                                  "failure: {critical stretch: 1"};
   for (int k = 0; k < 2; ++k) {
     breccia_model *springs = bodies(LINEAR, "model: elastic-1d, density: 2.4, Young modulus: 10 GPa", settings[k]);
     breccia_model *points = bodies(SOFTENING, "model: elastic-1d, density: 2.4, Young modulus: 10 GPa", settings[k]);
@@ -138,8 +140,7 @@ static void parting_a_body_spends_its_fracture_energy(void **state)
       breccia_model *model = model_of(
           "units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}}\nperidynamics: {formulation: bond-based, "
           "calibration: continuum, horizon: 0.00314159265358979, %s}\nbody: {b: {material: a, spacing: 0.001, "
-          "%s}}\nfailure: {critical stretch: 1}\n"
-          "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+          "%s}}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
           laws[law], spaces[s].words, spaces[s].shape);
       Domain *d = &model->domain;
       const Particles *p = d->particles;
@@ -298,7 +299,6 @@ static breccia_model *parted(bool two, int dimensions, const char *law, const ch
       "spacing: 0.1, shape: {box: {from: [0.5, 0, 0], to: [1.2, 0.8, 0.4]}}}"};
   return model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {%s, density: 1}}\n"
                   "peridynamics: {formulation: bond-based, space: %s%s}\nbody: {%s}\n"
-                  "failure: {critical stretch: 1}\n"
                   "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
                   law, dimensions == 2 ? "plane stress" : "3-D", keys, (dimensions == 2 ? plane : space)[two]);
 }
