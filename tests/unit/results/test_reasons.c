@@ -256,8 +256,8 @@ static void files_tell_volume_material_block_selection_and_stage(void **state)
   open_view(&view, "parts");
   for (int k = 0; particle_column_at(k); ++k) {
     const ParticleColumn *column = particle_column_at(k);
-    char *path = text_format("Breccia/%s", column->name), words[128], names[128] = "";
     if (column->is_needed && !column->is_needed(d)) continue;
+    char *path = text_format("Breccia/%s", column->name), words[128], names[128] = "";
     double *values = result_view_numbers(&view, path, H5T_NATIVE_DOUBLE, sizeof *values, &rows, NULL);
     assert_int_equal(rows, d->particles->count);
     for (int64_t n = 0; n < rows; ++n) assert_true(values[n] == column->value(d, n));
