@@ -463,8 +463,9 @@ LANES_INLINE void moments_exert(const MomentsSlice *s, const MomentsRows *rows, 
 
 LANES_INLINE void moments_clear_forces(const MomentsSlice *s, MomentsForces *forces)
 {
-  memset(forces->q, 0, sizeof *forces->q * (size_t)s->count);
-  memset(forces->direct, 0, sizeof *forces->direct * (size_t)s->count);
+  const size_t count = s->count > 0 ? (size_t)s->count : 0;
+  memset(forces->q, 0, sizeof *forces->q * count);
+  memset(forces->direct, 0, sizeof *forces->direct * count);
 }
 
 /** Adds the forces on the places around a slice to the sums of its stripe. */
