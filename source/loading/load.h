@@ -290,6 +290,9 @@ void loading_grown_strains(const Loading *loading, const LoadStrains *strains, d
 /** Puts what strains have changed by since the stage under way began, at that time of the run; NaN: all of them. loading_strain does not know of it. */
 void loading_changed_strains(const Loading *loading, const LoadStrains *strains, double begin, double time);
 extern const LoadType gravity_load, strength_reduction_load;
+/** Returns the axis of the largest component of the first gravity load, or -1 without one.
+ *  @param[out] sign  1 where gravity acts against the axis, which then points up; else -1 */
+int loading_gravity_axis(const Loading *loading, double *sign);
 /** Returns the factor by which the loads of a stage divide strengths at a time of the run; 1: none does, as in stage -1,
  *  before the run. */
 double loading_strength_reduction(const Loading *loading, int64_t stage, double time);

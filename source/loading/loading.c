@@ -447,6 +447,20 @@ void loading_mark_held(const Loading *loading, uint8_t *held)
   }
 }
 
+int loading_gravity_axis(const Loading *loading, double *sign)
+{
+  for (int k = 0; k < loading->count; ++k) {
+    if (loading->loads[k].type != &gravity_load) continue;
+    const double *gravity = loading->loads[k].spec->of[LOAD_gravity].point;
+    int axis = 0;
+    for (int r = 1; r < 3; ++r)
+      if (fabs(gravity[r]) > fabs(gravity[axis])) axis = r;
+    *sign = gravity[axis] > 0 ? -1 : 1;
+    return axis;
+  }
+  return -1;
+}
+
 double loading_strength_reduction(const Loading *loading, int64_t stage, double time)
 {
   double factor = 1;

@@ -9,26 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Returns the axis of the largest component of the first gravity load, or -1. @param[out] sign  1 where gravity acts
- *  against the axis, which then points up; else -1 */
-static int axis_of_gravity(const Loading *loading, double *sign)
-{
-  for (int k = 0; k < loading->count; ++k) {
-    const LoadSpec *spec = loading->loads[k].spec;
-    if (loading->loads[k].type != &gravity_load) continue;
-    int axis = 0;
-    for (int r = 1; r < 3; ++r)
-      if (fabs(spec->of[LOAD_gravity].point[r]) > fabs(spec->of[LOAD_gravity].point[axis])) axis = r;
-    *sign = spec->of[LOAD_gravity].point[axis] > 0 ? -1 : 1;
-    return axis;
-  }
-  return -1;
-}
-
 double ground_step_spacings(const Body *body, const Loading *loading)
 {
   double sign = 1;
-  const int up = axis_of_gravity(loading, &sign);
+  const int up = loading_gravity_axis(loading, &sign);
   const Particles *p = &body->particles;
   const double spacing = body->largest_spacing;
   if (up < 0 || up >= body->dimensions || !(spacing > 0)) return 0;
@@ -99,7 +83,7 @@ bool ground_step_is_weakened(const Loading *loading)
 const LoadSpec *ground_step_held_base(const Domain *d, const Loading *loading)
 {
   double sign = 1;
-  const int up = axis_of_gravity(loading, &sign);
+  const int up = loading_gravity_axis(loading, &sign);
   for (int k = 0; k < d->body.margins.count; ++k) {
     const Margin *margin = &d->body.margins.items[k];
     if (margin->repeats || support_slides(margin) || margin->axis != up || margin->high != (sign < 0)) continue;

@@ -72,6 +72,7 @@ typedef struct Static {
   /** True if all shorter attempts of the increment found no equilibrium: a long attempt is accepted although the body
    *  softens within it. */
   bool takes_coarse;
+  double begin; /* time at which the increment under way begins */
   /** Sum over the tries of the increment of the largest displacement in each [length]. */
   double travelled;
   double
@@ -118,17 +119,16 @@ int static_give_back(Solver *solver, Error *error);
 bool static_finds_reduction(const Solver *solver, double end);
 /** Returns true if an increment that only divides strengths further ended in an equilibrium that the body cannot have:
  *  ground that slides may find rest with particles turned inside out, far away.
- *  @param[in] begin, end  times of the increment */
-bool static_is_impossible(const Static *s, double begin, double end);
+ *  @param[in] end  time of the increment */
+bool static_is_impossible(const Static *s, double end);
 /** Returns true if a load reduces strengths, so that an increment may be given back because the body slides. */
 bool static_may_slide(const Static *s);
 /** Records the elastic displacement of the body (StageRecord) in the first increment of a stage. */
 void static_begin_reduction(Solver *solver);
 /** Adds the largest displacement of the last try. */
 void static_note_motion(Static *s);
-/** Returns true if the body has moved in the increment as no body at rest does.
- *  @param[in] begin  time of the beginning of the increment */
-bool static_slides(const Solver *solver, double begin);
+/** Returns true if the body has moved in the increment as no body at rest does. */
+bool static_slides(const Solver *solver);
 
 /** Equilibrium with what has come of the increment: bonds that it has overloaded, and what forces are found with as the step before left it, like
  *  the control of zero-energy modes that fades in correspondence. Where increments are few, what that holds besides would be spent as fracture energy.

@@ -65,7 +65,7 @@ static int try_again(Static *s, bool first, TryBy by, NewtonOutcome *outcome, Er
 {
   if (!s->way.moved.row[0] && !vector_create(&s->way.moved, &s->domain->particles->space, "static solver", error))
     return BRECCIA_FAILURE;
-  if (first) vector_combine(0, &s->way.moved, 1, &s->newton.moved);
+  if (first) vector_copy(&s->way.moved, &s->newton.moved);
   *outcome = static_try(s, s->clock->time, (Try){.again = true, .by = by}, error);
   return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
 }

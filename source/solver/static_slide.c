@@ -1,8 +1,9 @@
 /* Ground that slides as strengths are reduced. A body that slides may come to rest elsewhere: control of zero-energy
  * modes or families that resist uneven motions hold slip lines that the law does not hold. Such a state of rest says
  * nothing of the ground. Displacement then grows much faster with the factor F than in an elastic body: the stage
- * judges by |du| / dln(F) over the displacement l sqrt(2 W / (E V)), with which a body of the shortest side l and the
- * volume V would store the energy W that is stored as the reduction begins. */
+ * judges by |du| / dln(F) over the displacement l sqrt(2 W int(dV / E)) / V, with which the volume V of ground whose
+ * strength is reduced, of the length l along gravity, would store the energy W that is stored as the reduction begins.
+ * Other materials do not count: one stiff bar or a support would make every displacement a slide. */
 #include "solver/static.h"
 
 #include "loading/load.h"
@@ -41,9 +42,9 @@ bool static_finds_reduction(const Solver *run, double end)
          slide_others_stay(s, begin, end) && slide_growth(s, begin, clock->time) > 0;
 }
 
-bool static_is_impossible(const Static *s, double begin, double end)
+bool static_is_impossible(const Static *s, double end)
 {
-  return slide_growth(s, begin, end) > 0 && slide_others_stay(s, begin, end) &&
+  return slide_growth(s, s->begin, end) > 0 && slide_others_stay(s, s->begin, end) &&
          distortion_first_impossible(s->domain) >= 0;
 }
 
@@ -54,24 +55,42 @@ bool static_may_slide(const Static *s)
   return false;
 }
 
-/** Returns the displacement [length] with which a body of the size and volume of the domain stores an energy. */
-static double slide_elastic(const Domain *d, double stored)
+/** Returns the length of the body along gravity; without gravity its shortest side between faces that do not repeat. */
+static double slide_length(const Static *s)
 {
-  double side = INFINITY, volume = 0, stiffest = 0;
-  for (int k = 0; k < d->body.dimensions; ++k) side = fmin(side, d->body.high[k] - d->body.low[k]);
+  const Body *body = &s->domain->body;
+  double sign = 1, shortest = INFINITY;
+  const int up = loading_gravity_axis(s->loading, &sign);
+  if (up >= 0 && up < body->dimensions) return body->high[up] - body->low[up];
+  for (int k = 0; k < body->dimensions; ++k) {
+    bool repeats = false;
+    for (int m = 0; m < body->margins.count; ++m)
+      repeats |= body->margins.items[m].repeats && body->margins.items[m].axis == k;
+    if (!repeats) shortest = fmin(shortest, body->high[k] - body->low[k]);
+  }
+  return isfinite(shortest) ? shortest : 0;
+}
+
+/** Returns the displacement [length] with which the ground whose strength is reduced stores an energy. */
+static double slide_elastic(const Static *s, double stored)
+{
+  const Domain *d = s->domain;
+  double volume = 0, compliance = 0;
   for (int64_t n = 0; n < d->particles->count; ++n) {
     const int32_t i = d->particles->place_of[n];
-    if (d->counted[i] > 0) volume += d->particles->volume[i];
+    const Material *material = &d->materials[d->material[i / SLICE]];
+    if (d->counted[i] <= 0 || !material_can_reduce(material)) continue;
+    volume += d->particles->volume[i];
+    compliance += d->particles->volume[i] / material_young(material);
   }
-  for (int k = 0; k < d->material_count; ++k) stiffest = fmax(stiffest, material_young(&d->materials[k]));
-  return volume > 0 && stiffest > 0 ? side * sqrt(2 * fmax(0, stored) / (stiffest * volume)) : 0;
+  return volume > 0 ? slide_length(s) * sqrt(2 * fmax(0, stored) * compliance) / volume : 0;
 }
 
 void static_begin_reduction(Solver *run)
 {
   double *elastic = &run->records[run->clock.stage].elastic_displacement;
   const Static *s = run->own;
-  if (*elastic == 0 && static_may_slide(s)) *elastic = slide_elastic(s->domain, solver_energy(run).stored);
+  if (*elastic == 0 && static_may_slide(s)) *elastic = slide_elastic(s, solver_energy(run).stored);
 }
 
 void static_note_motion(Static *s)
@@ -88,10 +107,10 @@ void static_note_motion(Static *s)
   s->travelled += sqrt(largest);
 }
 
-bool static_slides(const Solver *run, double begin)
+bool static_slides(const Solver *run)
 {
   const Static *s = run->own;
   const double elastic = run->records[run->clock.stage].elastic_displacement,
-               growth = slide_growth(s, begin, run->clock.time);
+               growth = slide_growth(s, s->begin, run->clock.time);
   return elastic > 0 && growth > 0 && s->travelled > most_rate * growth * elastic;
 }

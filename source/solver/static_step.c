@@ -116,13 +116,12 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     increment_begin_again(&s->increment);
   } else {
     increment_begin(&s->increment);
-    s->way.bonds = s->way.given_off = s->way.sudden = s->travelled = 0;
+    s->way.bonds = s->way.given_off = s->way.sudden = 0;
   }
-  const double begin = how.again ? s->clock->time - s->clock->time_step : s->clock->time;
   NewtonOutcome outcome = static_press(s, end, how, error);
   if (outcome == NEWTON_CONVERGED && !s->newton.relaxes && !how.again && is_coarse(s, end - s->clock->time))
     outcome = NEWTON_COARSE;
-  if (outcome == NEWTON_CONVERGED && static_is_impossible(s, begin, end)) outcome = NEWTON_INVERTED;
+  if (outcome == NEWTON_CONVERGED && static_is_impossible(s, end)) outcome = NEWTON_INVERTED;
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
     if (how.again) newton_apply_loads(&s->newton, s->clock->time);
@@ -459,6 +458,8 @@ int static_advance(Solver *run, Text *warning, Error *error)
     const bool finds = static_finds_reduction(run, end);
     bool settled = true, slides = false;
     way = BY_METHOD;
+    s->begin = begin;
+    s->travelled = 0;
     NewtonOutcome outcome = try_first(s, end, &may_relax, &way, error);
     if (outcome == NEWTON_FAILED) return give_up(s, &before, BRECCIA_FAILURE);
     if (outcome == NEWTON_STOPPED) return give_up(s, &before, BRECCIA_INTERRUPTED);
@@ -467,7 +468,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
       clock->time = end;
       iterations = s->newton.iterations;
       const int status = static_settle(run, &outcome, &settled, &way, error);
-      slides = finds && settled && outcome == NEWTON_CONVERGED && !status && static_slides(run, begin);
+      slides = finds && settled && outcome == NEWTON_CONVERGED && !status && static_slides(run);
       if (settled && !slides) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
       if (status) return BRECCIA_FAILURE;
       if (settled && outcome == NEWTON_CONVERGED && !slides) break;

@@ -216,6 +216,46 @@ static void ground_that_slides_has_lost_its_equilibrium(void **state)
   }
 }
 
+/** Materials that are not weakened, such as stiff bars or a slab, and the width of a periodic strip say nothing of the
+ *  displacement at which ground slides: the factor of the slope without end stays. The modulus of an unused steel ended
+ *  the reduction long before the slope slid. */
+static void stiff_materials_and_narrow_periods_leave_the_factor(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *materials;
+    int columns;
+  } runs[] = {{"", 6}, {", steel: {model: elastic, density: 7.8, Young modulus: 2e8, Poisson ratio: 0.3}", 6}, {"", 3}};
+  double factors[3];
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m = model_of(
+        UNITS
+        "variables: {lean: \"${atan(0.5)}\"}\n"
+        "materials: {m: {" J2 "yield stress: \"${1.3*sqrt(3)*2*6*sin(lean)}\"}%s}\n"
+        "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {from: [0, -2], to: [%d, "
+        "6]}}}%s}\n"
+        "peridynamics: {space: plane strain, horizon: 2.015 spacings, formulation: correspondence, strain: small, "
+        "influence: conical, zero-energy control: {silling: 0.2, fades: yielding}}\n"
+        "loads: [{gravity: [\"${sin(lean)}\", \"${-cos(lean)}\"], history: {ramp to: 1}}, {on: {block: b, face: y-, "
+        "layers: 2}, displacement: [0, 0]}, {on: {block: b, face: x+}, support: {held: periodic}}%s]\n"
+        "solve: [{static: {increments: 2}}, {displacements: zero, loads: [{strength reduction: 2, history: {ramp to: "
+        "1}}], static: {increments: 20, smallest increment: 0.1}}]\n"
+        "pictures: []\n",
+        runs[k].materials, runs[k].columns,
+        k == 1 ? ", s: {material: steel, lattice: square, spacing: 1, thickness: 1, shape: {box: {from: [20, 0], to: "
+                 "[24, 2]}}}"
+               : "",
+        k == 1 ? ", {on: {block: s}, displacement: [0, 0]}" : "");
+    m->threads = 1;
+    step_surely(m, INT64_MAX);
+    factors[k] = solver_strength_reduction(&m->solver);
+    print_message("%d columns%s: %g\n", runs[k].columns, runs[k].materials, factors[k]);
+    breccia_model_destroy(&m);
+  }
+  assert_near(factors[1], factors[0], 1e-9);
+  assert_near(factors[2], factors[0], 0.026);
+}
+
 /** Loss of equilibrium is a factor of safety if a strength reduction alone has grown in the last stage. It is a failure
  *  if another load grows, too, or if another stage follows. */
 static void a_factor_is_found_by_a_reduction_alone(void **state)
@@ -455,6 +495,7 @@ int main(void)
       cmocka_unit_test(strengths_of_all_regions_are_divided),
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
       cmocka_unit_test(ground_that_slides_has_lost_its_equilibrium),
+      cmocka_unit_test(stiff_materials_and_narrow_periods_leave_the_factor),
       cmocka_unit_test(a_factor_is_found_by_a_reduction_alone),
       cmocka_unit_test(a_stage_that_fails_at_once_leaves_the_factor_before),
       cmocka_unit_test(ground_turned_inside_out_has_no_factor),
