@@ -64,6 +64,14 @@ static inline int64_t body_original(const Body *body, int64_t number)
   return number;
 }
 
+/** Replaces the ends of a bond by the particles whose images they are, as long as both are images of one support. The
+ *  bond then has the length of before. @param[in,out] ends  numbers of two particles */
+static inline void body_fold_bond(const Body *body, int64_t ends[2])
+{
+  while (body_outside(body, ends[0]) && body->margin_of[ends[0]] == body->margin_of[ends[1]])
+    for (int k = 0; k < 2; ++k) ends[k] = body->image_of[ends[k]];
+}
+
 /** Thickness of a plane body, cross-section of a bar, else 1. */
 static inline double body_section(const Body *body)
 {

@@ -157,7 +157,7 @@ void vector_sum_terms(const Vector *a, const VectorTerms *terms)
 
 void vector_scale(const Vector *a, double factor)
 {
-  vector_combine(factor, a, 0, a);
+  vector_combine(0, a, factor, a);
 }
 
 /* Numbers of the operands at the place of a pass. */

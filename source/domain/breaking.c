@@ -73,8 +73,10 @@ int64_t domain_count_broken(const Domain *d, int64_t counts[BREAK_CAUSES])
 
 void domain_bond_middle(const Domain *d, const int32_t bond[2], double middle[3])
 {
-  const bool outside[2] = {body_outside(&d->body, bond[0]), body_outside(&d->body, bond[1])};
-  int64_t ends[2] = {outside[0] && !outside[1] ? bond[1] : bond[0], outside[1] && !outside[0] ? bond[0] : bond[1]};
+  int64_t ends[2] = {bond[0], bond[1]};
+  body_fold_bond(&d->body, ends);
+  const bool outside[2] = {body_outside(&d->body, ends[0]), body_outside(&d->body, ends[1])};
+  if (outside[0] != outside[1]) ends[outside[1]] = ends[outside[0]];
   for (int k = 0; k < 2; ++k) ends[k] = body_original(&d->body, ends[k]);
   const int32_t a = d->particles->place_of[ends[0]], b = d->particles->place_of[ends[1]];
   double *const *x = d->particles->position;

@@ -100,13 +100,12 @@ static void region_set_row(const Domain *d, Region *region, int64_t row, const i
 {
   const Particles *p = d->particles;
   PointPlaces *at = &region->places;
-  int32_t numbers[2] = {p->number[ends[0]], p->number[ends[1]]};
+  int64_t numbers[2] = {p->number[ends[0]], p->number[ends[1]]};
   if (region->row_strength) region->row_strength[row] = fmin(d->strength[ends[0]], d->strength[ends[1]]);
   if (!at->position[0]) return;
   double middle[3], along[3], square = 0;
-  domain_bond_middle(d, numbers, middle);
-  if (body_outside(&d->body, numbers[0]) && body_outside(&d->body, numbers[1]))
-    for (int k = 0; k < 2; ++k) numbers[k] = (int32_t)body_original(&d->body, numbers[k]);
+  domain_bond_middle(d, (const int32_t[]){(int32_t)numbers[0], (int32_t)numbers[1]}, middle);
+  body_fold_bond(&d->body, numbers);
   for (int k = 0; k < 3; ++k) {
     along[k] = p->position[k][p->place_of[numbers[1]]] - p->position[k][p->place_of[numbers[0]]];
     square += along[k] * along[k];

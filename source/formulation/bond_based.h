@@ -45,6 +45,7 @@ struct BondBased {
   Space space;
   const Influence *influence;
   bool may_break;        /* as in FormulationParts */
+  bool crosses_rows;     /* elastic interfaces cross rows of particles */
   bool strength_of_body; /* tensile strengths of the deck are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */

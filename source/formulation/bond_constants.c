@@ -1,5 +1,6 @@
 #include "base/tensor.h"
 #include "formulation/bond_based.h"
+#include "formulation/interface.h"
 #include "formulation/whole_family.h"
 
 #include <string.h>
@@ -237,4 +238,5 @@ void bond_describe(const void *formulation, const Units *units, Text *text)
     if (dimensions == 3) text_add(text, ", %.3f along those of space", unit * young_along(c, dimensions, space));
     text_add(text, "\n");
   }
+  if (b->crosses_rows) interfaces_describe(text);
 }

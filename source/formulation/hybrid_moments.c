@@ -250,7 +250,7 @@ typedef struct MomentsField {
 typedef struct MomentsSlice {
   const Hybrid *h;
   const HybridMoments *m;
-  int64_t slice, first; /* first: of its places in the list of those around slices */
+  int64_t first; /* of its places in the list of those around slices */
   int count;
   double x[HYBRID_AROUND][QUAD]; /* [x, 1] */
 } MomentsSlice;
@@ -277,7 +277,6 @@ LANES_INLINE void moments_find_slice(const Hybrid *h, int64_t slice, MomentsSlic
 {
   s->h = h;
   s->m = h->moments;
-  s->slice = slice;
   s->first = s->m->first[slice];
   s->count = (int)(s->m->first[slice + 1] - s->first);
   if (!s->count) return;

@@ -42,14 +42,6 @@ static double interface_modulus(const Interfaces *i, int64_t place)
   return i->modulus[i->parts.particles->block[place / SLICE]];
 }
 
-/** Returns half of the spacing of the particles around a place, computed from its volume. */
-static double interface_radius(const Interfaces *i, int64_t place)
-{
-  const double volume = i->parts.particles->volume[place] / body_section(i->parts.body);
-  const int dimensions = i->parts.body->dimensions;
-  return (dimensions == 3 ? cbrt(volume) : dimensions == 2 ? sqrt(volume) : volume) / 2;
-}
-
 /* ---- pieces of a bond ---- */
 
 /** A walk along a bond through the cells of particles. The wall of two cells has equal differences of squared distance
@@ -65,7 +57,7 @@ typedef struct InterfaceWalk {
 static double interface_wall(const Interfaces *i, const InterfaceWalk *w, int64_t other, double *slope)
 {
   double *const *x = i->parts.particles->position;
-  double ahead = 0, apart = pow(interface_radius(i, w->place), 2) - pow(interface_radius(i, other), 2);
+  double ahead = 0, apart = pow(i->radius[w->place], 2) - pow(i->radius[other], 2);
   for (int k = 0; k < 3; ++k) {
     const double own = x[k][w->place] - w->from[k], there = x[k][other] - w->from[k];
     ahead += 2 * (there - own) * w->xi[k];
@@ -75,10 +67,12 @@ static double interface_wall(const Interfaces *i, const InterfaceWalk *w, int64_
   return ahead > 0 ? apart / ahead : INFINITY;
 }
 
+static const double interface_tie = 1e-9; /* shares of a bond's length that differ by less are alike */
+
 /** Goes on to the next cell. @return share of the bond's length in the present one */
 static double interface_step(const Interfaces *i, InterfaceWalk *w, int64_t low, int64_t high)
 {
-  const double tie = 1e-9;
+  const double tie = interface_tie;
   const Family *f = i->parts.family;
   const int64_t slice = low / SLICE;
   double least = INFINITY, steepest = 0, slope = 0;
@@ -99,7 +93,7 @@ static double interface_step(const Interfaces *i, InterfaceWalk *w, int64_t low,
 }
 
 /** Returns the stiffness of the pieces of a bond in series over the mean of both ends' stiffness; 1 if the bond lies in
- *  one material, or if a law on its way is not linear. */
+ *  one material, if a law on its way is not linear, or if it passes through too many cells. */
 static double interface_series_of(const Interfaces *i, int64_t one, int64_t other)
 {
   enum { MOST_CELLS = 100 };
@@ -116,9 +110,11 @@ static double interface_series_of(const Interfaces *i, int64_t one, int64_t othe
     const int64_t place = w.place;
     const double piece = interface_step(i, &w, low, high);
     compliance += piece / interface_modulus(i, place);
-    unlike |= piece > 0 && interface_is_unlike(i, low, place);
-    if (piece > 0 && !interface_is_linear(i, place)) return 1;
+    if (piece <= interface_tie) continue;
+    unlike |= interface_is_unlike(i, low, place);
+    if (!interface_is_linear(i, place)) return 1;
   }
+  if (w.at < 1) return 1;
   return unlike ? 2 / (compliance * (interface_modulus(i, low) + interface_modulus(i, high))) : 1;
 }
 
@@ -132,6 +128,14 @@ static void interface_find_near(void *context, int64_t place)
       i->near[place] = interface_is_unlike(i, place, family_bond(f, slice, slot, (int)(place % SLICE)).neighbour);
 }
 
+static void interface_find_radius(void *context, int64_t place)
+{
+  const Interfaces *i = context;
+  const double volume = i->parts.particles->volume[place] / body_section(i->parts.body);
+  const int dimensions = i->parts.body->dimensions;
+  i->radius[place] = (dimensions == 3 ? cbrt(volume) : dimensions == 2 ? sqrt(volume) : volume) / 2;
+}
+
 static void interface_find_series(void *context, int64_t slice)
 {
   const Interfaces *i = context;
@@ -143,7 +147,8 @@ static void interface_find_series(void *context, int64_t slice)
       float *series = &i->series[slice][(slot - f->first[slice]) * SLICE + lane];
       *series = 1;
       if (!(f->intact[slot] >> lane & 1) || !i->near[place]) continue;
-      *series = (float)interface_series_of(i, place, family_bond(f, slice, slot, lane).neighbour);
+      const int32_t other = family_bond(f, slice, slot, lane).neighbour;
+      if (i->near[other]) *series = (float)interface_series_of(i, place, other);
     }
 }
 
@@ -167,7 +172,7 @@ static void interface_contact(const Interfaces *i, int64_t place, double contact
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
     if (!interface_is_unlike(i, place, bond.neighbour)) continue;
-    const double spacing = interface_radius(i, place) + interface_radius(i, bond.neighbour),
+    const double spacing = i->radius[place] + i->radius[bond.neighbour],
                  weight = 1 - interface_smooth(nearest, far, bond.length / spacing);
     for (int k = 0; k < 3; ++k) contact[k] += weight * bond.xi[k];
   }
@@ -268,7 +273,9 @@ int interfaces_create(Interfaces *i, const FormulationParts *parts, const double
   if (interface_make_series(i, error)) return BRECCIA_FAILURE;
   if (!i->series) return BRECCIA_OK;
   i->normal = memory_zeroed((size_t)places, sizeof *i->normal, "interfaces of bonds", error);
-  if (!i->normal) return BRECCIA_FAILURE;
+  i->radius = memory_zeroed((size_t)places, sizeof *i->radius, "interfaces of bonds", error);
+  if (!i->normal || !i->radius) return BRECCIA_FAILURE;
+  team_each(places, interface_find_radius, i);
   team_each(parts->particles->slices, interface_find_series, i);
   team_each(places, interface_find_normal, i);
   return BRECCIA_OK;
@@ -279,6 +286,7 @@ void interfaces_destroy(Interfaces *i)
   free(i->near);
   free(i->series);
   free(i->all);
+  free(i->radius);
   free(i->normal);
   *i = (Interfaces){0};
 }
@@ -303,6 +311,34 @@ double interfaces_along(const Interfaces *i, int64_t place, const Bond *bond)
   const double across = fmax(interface_across(i, place, bond), interface_across(i, bond->neighbour, bond));
   const bool inside = interface_is_linear(i, bond->neighbour) && !interface_is_unlike(i, place, bond->neighbour);
   return inside ? 1 - interface_smooth(0, most, sqrt(across)) : 0;
+}
+
+bool interfaces_cross_rows(const Interfaces *i)
+{
+  const Family *f = i->parts.family;
+  int64_t places = 0, without = 0;
+  for (int64_t place = 0; i->normal && place < i->parts.particles->places; ++place) {
+    const double *n = i->normal[place];
+    if (!i->near[place] || n[0] * n[0] + n[1] * n[1] + n[2] * n[2] == 0) continue;
+    const int64_t slice = place / SLICE;
+    bool along = false;
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1] && !along; ++slot) {
+      if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+      const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+      along = interfaces_along(i, place, &bond) > 0;
+    }
+    ++places;
+    without += !along;
+  }
+  return 10 * without > places;
+}
+
+void interfaces_describe(Text *text)
+{
+  text_add(text,
+           "  elastic interfaces cross rows of particles, where bonds along them are missing: a block with such an "
+           "interface, of contrast 10, came out 7 %% off in stretch and 10 %% off in shear; turn the block, so that "
+           "rows lie along the interface\n");
 }
 
 /** Returns the elongation of a unit bond, or its square, averaged over the directions of a unit strain along the

@@ -19,6 +19,7 @@ typedef struct Interfaces {
                           * no place of the slice is near */
   float *all;            /* [count] which lie here */
   size_t count;
+  double *radius;      /* [places] half of the spacing of the particles around a place, from its volume */
   double (*normal)[3]; /* [places] unit normal of the nearest interface; 0 where there is none */
 } Interfaces;
 
@@ -57,6 +58,12 @@ typedef struct InterfaceSum {
 /** Returns what is missing in the sum of a place, over the part of bonds along the interface in it [-]; 0 far from
  *  interfaces and where no bonds lie along them. */
 double interfaces_lack(const Interfaces *interfaces, int64_t place, const InterfaceSum *sum);
+
+/** Returns true if interfaces cross rows of particles: at more than a tenth of the places that have a normal, no bond lies
+ *  along the interface. */
+bool interfaces_cross_rows(const Interfaces *interfaces);
+/** Adds what `check` says of interfaces that cross rows. */
+void interfaces_describe(Text *text);
 
 /** Returns how far a bond lies along the interface of both of its ends: from 0 to 1. */
 double interfaces_along(const Interfaces *interfaces, int64_t place, const Bond *bond);

@@ -104,6 +104,7 @@ struct Ordinary {
   float *by_length;             /* of bonds in stored slots (stretch_lengths); NULL if there are none */
   double shortest;              /* of all bonds */
   bool may_break;               /* as in FormulationParts */
+  bool crosses_rows;            /* elastic interfaces cross rows of particles */
   breccia_deviator *deviators;  /* [materials] */
   int material_count;
   Flow *flow;     /* NULL: all families are elastic */

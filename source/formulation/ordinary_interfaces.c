@@ -128,6 +128,7 @@ int ordinary_find_interfaces(Ordinary *o, const FormulationParts *parts, Error *
     failed = !of.dilatation || !of.energy || ordinary_interface_room(&of, error);
     if (!failed) team_each(p->places, ordinary_interface_lack, &of);
     if (!failed) team_each(p->slices, ordinary_interface_slice, &of);
+    o->crosses_rows = interfaces_cross_rows(&of.interfaces);
   }
   free(of.shear);
   free(of.dilatation);

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "formulation/interface.h"
 #include "formulation/ordinary.h"
 
 #include "base/team.h"
@@ -332,6 +333,7 @@ void ordinary_describe(const void *formulation, const Units *units, Text *text)
     if (o->body->lattices[block].chunks) describe_lattice(o, block, text);
     describe_tension(o, block, text);
   }
+  if (o->crosses_rows) interfaces_describe(text);
 }
 
 /** Integral of omega |xi|^2 over the part of a ball (of a disc in the plane) beyond a plane at a distance from its middle; all in horizons. */
