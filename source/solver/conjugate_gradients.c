@@ -56,7 +56,7 @@ static int solve(LinearSolver *s, const Vector *f, const Vector *v, double toler
   const Unknowns *u = &s->unknowns;
   const double first = unknowns_product_of_forces(u, f, f);
   double rest = first, slope = 0;
-  vector_combine(0, &g->rest, 1, f);
+  vector_copy(&g->rest, f);
   record->unsuited = !g->preconditioner.is_symmetric;
   while (!record->unsuited && record->iterations < MOST_ITERATIONS && rest > tolerance * tolerance * first) {
     record->stopped = s->allowed && record->iterations >= s->allowed;

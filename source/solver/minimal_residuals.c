@@ -122,7 +122,7 @@ static int solve(LinearSolver *s, const Vector *f, const Vector *v, double toler
   const double first = sqrt(unknowns_product_of_forces(u, f, f));
   const double little = 0.95;  /* a round that leaves more than this of the residual leads nowhere */
   const double useless = 0.01; /* Newton's method comes on well with less */
-  vector_combine(0, &g->basis[0], 1, f);
+  vector_copy(&g->basis[0], f);
   for (double length = first, before = INFINITY; first > 0;) {
     record->residual = length / first;
     if (length <= tolerance * first || !(length <= little * before) || record->iterations >= MOST_PRODUCTS) break;
@@ -130,7 +130,7 @@ static int solve(LinearSolver *s, const Vector *f, const Vector *v, double toler
     if (record->stopped) break;
     before = length;
     if (go_round(s, length, 0.9 * tolerance * first, v, record, error)) return BRECCIA_FAILURE;
-    vector_combine(0, &g->scaled, 1, v);
+    vector_copy(&g->scaled, v);
     linear_solver_apply(s, &g->scaled, &g->basis[0]);
     ++record->iterations;
     vector_combine(-1, &g->basis[0], 1, f);

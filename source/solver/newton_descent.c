@@ -38,7 +38,7 @@ static int find_direction(Descent *d, Newton *n, double accuracy, LinearRecord *
   const int64_t oldest = d->count > DESCENT_PAIRS ? d->count - DESCENT_PAIRS : 0;
   double taken[DESCENT_PAIRS];
   if (newton_prepare(n, error)) return BRECCIA_FAILURE;
-  vector_combine(0, &d->room, 1, &n->force);
+  vector_copy(&d->room, &n->force);
   for (int64_t k = d->count - 1; k >= oldest; --k) {
     const int64_t at = k % DESCENT_PAIRS;
     taken[at] = vector_inner(&d->room, &d->step[at], 1) / d->work[at];
@@ -66,8 +66,8 @@ static void keep_pair(Descent *d, const Newton *n, double share)
   vector_combine(1, &d->before, -1, &n->force);
   const double work = vector_inner(&d->before, &d->room, 1);
   if (!(work > 0)) return;
-  vector_combine(0, &d->step[at], 1, &d->room);
-  vector_combine(0, &d->fall[at], 1, &d->before);
+  vector_copy(&d->step[at], &d->room);
+  vector_copy(&d->fall[at], &d->before);
   d->work[at] = work;
   ++d->count;
 }
@@ -155,7 +155,7 @@ static NewtonOutcome step(Descent *d, Newton *n, double time, double motions, do
   NewtonOutcome outcome;
   unknowns_spread(u, motions, &n->change);
   if (isnan(motions)) {
-    vector_combine(0, &d->before, 1, &n->force);
+    vector_copy(&d->before, &n->force);
     outcome = search(n, time, start, &work, share, error);
   } else {
     newton_move(n, 1);

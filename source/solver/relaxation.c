@@ -118,7 +118,7 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, int most, 
   if (moves) add_motions(r, n);
   vector_clear(&n->change);
   const double before = unknowns_product_of_forces(u, &n->force, &n->force);
-  vector_combine(0, &r->momentum, 1, &n->force);
+  vector_copy(&r->momentum, &n->force);
   answer_elastically(r, n, &n->force, &n->change, most, 1e-2);
   /* Where elastic stiffness is not symmetric, gradients may raise what is left. */
   if (!(unknowns_product_of_forces(u, &n->force, &n->force) <= before)) vector_clear(&n->change);

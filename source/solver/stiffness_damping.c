@@ -32,7 +32,7 @@ size_t stiffness_damping_bytes(const StiffnessDamping *s, const Domain *d)
 
 void stiffness_damping_note(StiffnessDamping *s, const Domain *d)
 {
-  vector_combine(0, &s->was, 1, &d->particles->displacement);
+  vector_copy(&s->was, &d->particles->displacement);
 }
 
 void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
@@ -41,7 +41,7 @@ void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
   tensor_copy_save(&s->tensors, d);
   domain_set_elastic_stage(d, true);
   if (!linear) domain_evaluate(d, &(Evaluation){.displacement = &s->was, .internal = &s->drag});
-  if (linear) vector_combine(0, &s->drag, 1, &d->particles->internal);
+  if (linear) vector_copy(&s->drag, &d->particles->internal);
   domain_evaluate(d, &(Evaluation){.displacement = &d->particles->displacement, .internal = &s->force});
   domain_set_elastic_stage(d, elastic);
   tensor_copy_restore(&s->tensors, d);
