@@ -78,7 +78,8 @@ bench-toughness: all
 bench-bending: all
 	@python3 -B bench/bending.py build/release/breccia docs/choosing.md $(ROWS)
 
-# Bending at high Poisson ratios, strips that crack, pressed prisms, vertical cuts: four tables of docs/choosing.md; a minute of a processor.
+# Bending at high Poisson ratios, strips that crack, pressed prisms, vertical cuts, factors of safety: five tables of
+# docs/choosing.md; ten minutes of a processor.
 # TABLES="strips cuts": these alone.
 bench-choosing: all
 	@python3 -B bench/choosing.py build/release/breccia docs/choosing.md $(TABLES)

@@ -2,14 +2,15 @@
 """Measures tables of docs/choosing.md on bodies at rest and writes them there.
 
   choosing.py BRECCIA PAGE              all tables
-  choosing.py BRECCIA PAGE TABLE ...    some of: bending, strips, prisms, cuts
+  choosing.py BRECCIA PAGE TABLE ...    some of: bending, strips, prisms, cuts, factors
 
 bending   pure bending in plane strain, deflection over M L^2 / (2 E' I), for Poisson ratios up to 0.499
 strips    largest stress of strips of softening bonds over the tensile strength, by direction of the lattice
 prisms    largest load of pressed prisms of bonds, over f_c times the section
 cuts      height of vertical cuts in clay that still stand, over 3.776 s_u / gamma
+factors   factors of safety of cuts and slopes, over closed forms and slip circles
 
-A run takes up to ten seconds of processor time, all of them a minute."""
+A run takes up to ten seconds of processor time, those of factors up to two minutes, all of them ten minutes."""
 import concurrent.futures
 import csv
 import json
@@ -179,6 +180,130 @@ def stands(program, keys):
     return found["crest"]["time"][-1] * GRAVITY * 2 * 8 / 40 / 3.776
 
 
+def circle_factor(cohesion, slope, center, radius):
+    """Returns the factor of safety of a slip circle by Bishop (1955), without pore water; infinity of a circle that cuts no
+    ground of the slope. @param slope  friction angle (degrees), unit weight, height, angle (degrees)"""
+    friction, weight, height, angle = slope
+    tangent, run_out, strips = math.tan(math.radians(friction)), height / math.tan(math.radians(angle)), 200
+
+    def surface(x):
+        return min(height, max(0.0, x / run_out * height))
+    low, high = center[0] - radius, center[0] + radius
+    fine = [low + (high - low) * (k + 0.5) / 4000 for k in range(4000)]
+    inside = [x for x in fine if surface(x) > center[1] - math.sqrt(radius**2 - (x - center[0])**2)]
+    if len(inside) < 100 or center[1] < height:
+        return math.inf
+    width, parts, driving = (inside[-1] - inside[0]) / strips, [], 0.0
+    for k in range(strips):
+        x = inside[0] + (k + 0.5) * width
+        sine = (x - center[0]) / radius
+        load = weight * (surface(x) - center[1] + radius * math.sqrt(1 - sine**2)) * width
+        parts.append((sine, math.sqrt(1 - sine**2), load))
+        driving += load * sine
+    if driving <= 0:
+        return math.inf
+    factor = 1.0
+    for _ in range(30):
+        resisting = sum((cohesion * width + load * tangent) / (cosine + sine * tangent / factor) for sine, cosine, load in parts)
+        factor = resisting / driving
+        if not 0 < factor < 100:
+            return math.inf
+    return factor
+
+
+def least_factor(cohesion, slope, depth):
+    """Returns the least factor of all slip circles that reach no deeper than a depth below the toe, by a search that
+    halves its steps."""
+    height = slope[2]
+    best, at, step = math.inf, (0.5 * height, 1.8 * height, 0.5 * depth), 0.5 * height
+    while step > 0.005 * height:
+        around = [(at[0] + i * step, at[1] + j * step, at[2] + k * step) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
+        found = [(circle_factor(cohesion, slope, (a, b), b + min(depth, d)), (a, b, d)) for a, b, d in around]
+        least = min(found)
+        if least[0] < best:
+            best, at = least
+        else:
+            step /= 2
+    return best
+
+
+def spiral_height(tangent):
+    """Returns gamma H / c of a vertical cut by the logarithmic spiral through its toe with the least height (Chen 1975)."""
+    def height(first, last):
+        grown = math.exp((last - first) * tangent)
+        rise = math.sin(last) * grown - math.sin(first)
+        top = math.sin(last - first) / math.sin(last) - math.cos(last) / math.sin(last) * rise
+        whole = ((3 * tangent * math.cos(last) + math.sin(last)) * grown**3 - 3 * tangent * math.cos(first) - math.sin(first)) / (3 * (1 + 9 * tangent**2))
+        upper = top * (2 * math.cos(first) - top) * math.sin(first) / 6
+        front = grown / 6 * (math.sin(last - first) - top * math.sin(last)) * (math.cos(first) - top + math.cos(last) * grown)
+        moved = whole - upper - front
+        return (grown**2 - 1) / (2 * tangent * moved) * rise if moved > 0 and rise > 0 and top > 0 else math.inf
+    degrees = [math.radians(0.5 * k) for k in range(1, 180)]
+    return min(height(first, last) for first in degrees for last in degrees if last > first)
+
+
+def spiral_factor(cohesion, degrees):
+    """Returns the factor of safety of a vertical cut by logarithmic spirals. @param cohesion  over gamma H"""
+    low, high, tangent = 0.5, 3.0, math.tan(math.radians(degrees))
+    while high - low > 1e-3:
+        factor = (low + high) / 2
+        stands = 1 < spiral_height(tangent / factor) * cohesion / factor
+        low, high = (factor, high) if stands else (low, factor)
+    return low
+
+
+TALL = (12, 24)  # heights, in spacings of 1 m
+SPECIFIC = 20.0  # unit weight (kN/m3)
+DEEP = 5.53  # gamma H / s_u of a slope of 45 degrees on rock at half its height below the toe (docs/theory.md, 8.7)
+
+
+def clay(strength):
+    return {"model": "j2", "density": SPECIFIC / 10, "Young modulus": 1e6, "Poisson ratio": 0.45, "yield stress": math.sqrt(3) * strength}
+
+
+def frictional(cohesion, degrees):
+    return {"model": "mohr-coulomb", "density": SPECIFIC / 10, "Young modulus": 1e6, "Poisson ratio": 0.3, "cohesion": cohesion,
+            "friction angle": degrees, "dilation angle": degrees, "tensile strength": cohesion / math.tan(math.radians(degrees))}
+
+
+def ground(material, corners, loads=None, periodic=False):
+    """A body of ground on two held layers whose strength is reduced until it slides."""
+    sides = [{"on": {"face": "x+"}, "support": {"held": "periodic" if periodic else "across"}}]
+    sides += [] if periodic else [{"on": {"face": "x-"}, "support": {"held": "across"}}]
+    return {
+        "units": {"length": "m", "force": "kN", "time": "s"}, "materials": {"soil": material},
+        "body": {"ground": {"material": "soil", "lattice": "square", "spacing": 1, "thickness": 1, "shape": {"polygon": {"corners": corners}}}},
+        "peridynamics": {"formulation": "correspondence", "strain": "small", "space": "plane strain", "horizon": "2.015 spacings",
+                         "influence": "conical", "zero-energy control": {"silling": 0.2, "fades": "yielding"}},
+        "loads": [*sides, {"on": {"face": "y-", "layers": 2}, "displacement": [0, 0]}, {**(loads or {"gravity": [0, -10]}), "history": {"ramp to": 1}}],
+        "solve": [{"static": {"increments": 5}},
+                  {"displacements": "zero", "loads": [{"strength reduction": 2, "name": "weaken", "history": {"ramp to": 1}}],
+                   "static": {"increments": 40, "smallest increment": 0.1}}],
+        "watch": {"f": {"load": "weaken", "every": 1}},
+    }
+
+
+def grounds(h):
+    """Returns what the table of factors has for a height: words, the right factor, its source, the deck."""
+    weight, lean, foot = SPECIFIC * h, math.atan(0.5), h / 2
+    cut = [[0, -h - 2], [4 * h, -h - 2], [4 * h, h], [2 * h, h], [2 * h, 0], [0, 0]]
+    slope = [[-2 * h, -h / 2 - 2], [4 * h, -h / 2 - 2], [4 * h, h], [h, h], [0, 0], [-2 * h, 0]]
+    cohesion, steep = 1.3 * weight / 5.50, 0.1 * weight
+    pressed = {"on": {"face": "y+", "inside": {"box": {"from": [0, -1], "to": [foot, 1]}}}, "traction": [0, -100]}
+    return [
+        ("vertical cut, clay", 1.3, "γ H = 3.776 s_u", ground(clay(1.3 * weight / 3.776), cut)),
+        ("vertical cut, φ = 20° and cohesion", spiral_factor(cohesion / weight, 20), "logarithmic spirals", ground(frictional(cohesion, 20), cut)),
+        ("slope of 45°, clay, on rock at half the height below the toe", 1.4, f"γ H = {DEEP} s_u", ground(clay(1.4 * weight / DEEP), slope)),
+        ("slope of 45°, φ = 20° and cohesion, the same ground", least_factor(steep, (20, SPECIFIC, h, 45), h / 2), "Bishop (1955)",
+         ground(frictional(steep, 20), slope)),
+        ("slope without end, clay", 1.3, "s_u / (γ H sin β)",
+         ground(clay(1.3 * weight * math.sin(lean)), [[0, -2], [8, -2], [8, h], [0, h]],
+                {"gravity": [10 * math.sin(lean), -10 * math.cos(lean)]}, True)),
+        ("footing on clay, half its width half the height", 1.3, "5.142 s_u",
+         ground(clay(130 / 5.142), [[0, -h - 2], [4 * foot, -h - 2], [4 * foot, 0], [0, 0]], pressed)),
+    ]
+
+
 def bending_table(pool, program):
     cases = [(formulation, *body, ratio) for formulation, bodies in BENT.items() for body in bodies for ratio in RATIOS]
     found = dict(zip(cases, pool.map(lambda case: deflection(program, case), cases)))
@@ -215,7 +340,23 @@ def cuts_table(pool, program):
     return lines
 
 
-TABLES = {"bending": bending_table, "strips": strips_table, "prisms": prisms_table, "cuts": cuts_table}
+def safety(program, deck):
+    found, _ = run(program, deck)
+    return found["f"]["value"][-1]
+
+
+def factors_table(pool, program):
+    rows = [grounds(h) for h in TALL]
+    cases = [(row, n) for row in range(len(rows[0])) for n in range(len(TALL))]
+    found = dict(zip(cases, pool.map(lambda case: safety(program, rows[case[1]][case[0]][3]), cases)))
+    lines = ["| ground | right factor, by | " + " | ".join(f"{h} spacings" for h in TALL) + " |", "|---" * (2 + len(TALL)) + "|"]
+    for row, (words, right, source, _) in enumerate(rows[0]):
+        cells = (f"{found[row, n]:.3f} ({100 * (found[row, n] / right - 1):+.1f} %)" for n in range(len(TALL)))
+        lines.append(f"| {words} | {right:.3f}, {source} | " + " | ".join(cells) + " |")
+    return lines
+
+
+TABLES = {"bending": bending_table, "factors": factors_table, "strips": strips_table, "prisms": prisms_table, "cuts": cuts_table}
 
 
 def main(program, page, *names):

@@ -15,8 +15,8 @@
  * because the energy of a pressure does not change as ground slides, and, if the influence decreases with distance, of
  *   most_resisted q / (G sqrt(2 w / G)),  q = sqrt(J_2).
  * Slip lines are narrower than families. The strain of a family contains a part of the motion of a slip line; control
- * would resist the other part in addition to the strength of the law. The last bound applies to points near yielded
- * ones, too (two families wide): their laws stay elastic beside a slip line, and their control would hold it.
+ * would resist the other part in addition to the strength of the law. The last bound applies to points near those
+ * whose laws have yielded, too (two families wide): their laws stay elastic beside a slip line, and their control would hold it.
  *
  * Each point has its own factor for all its bonds, so that z stays what is left by the best fit, and forces follow from an energy. A step takes the
  * factors that were committed with the one before: forces are then linear in what they were, and the tangent symmetric. */
@@ -36,7 +36,8 @@ enum {
   TRIED = 1,    /* of slices: a factor was below 1 in some trial */
   SOFTENED = 2, /* a committed factor is below 1 */
   BESIDE = 4,   /* of places: the factor of a neighbour is below 1; of slices: some place has BESIDE or NEAR */
-  NEAR = 8      /* of places: the factor of a neighbour's neighbour is below 1 */
+  NEAR = 8,     /* of places: the factor of a neighbour's neighbour is below 1 */
+  SPREAD = 16   /* of places: neighbours have been marked */
 };
 
 struct Fading {
@@ -45,8 +46,10 @@ struct Fading {
   double *found;    /* [places] that step's own, for the one after it */
   double *whole[6]; /* C where nothing has faded; NULL of a uniform control */
   uint8_t *mark;    /* [slices] where it is 0, all factors are 1 */
-  uint8_t *near;    /* [places] SOFTENED, BESIDE and NEAR; 0: the stored energy of control is not bounded */
-  bool softened;    /* some are below 1 */
+  uint8_t *near;    /* [places] SOFTENED, BESIDE, NEAR and SPREAD; 0: the stored energy of control is not bounded */
+  uint8_t *yields,
+      *yielded;  /* [places] 1: the law has lost stiffness, in the step that is tried; in a committed step */
+  bool softened; /* some are below 1 */
 };
 
 static bool fades_in(const Correspondence *c, const Material *m)
@@ -132,7 +135,9 @@ int correspondence_create_fading(Correspondence *c, Error *error)
   f->found = places_array(places, "zero-energy control", error);
   f->mark = memory_zeroed((size_t)c->particles->slices, 1, "zero-energy control", error);
   f->near = memory_zeroed((size_t)places, 1, "zero-energy control", error);
-  bool failed = !f->used || !f->next || !f->found || !f->mark || !f->near;
+  f->yields = memory_zeroed((size_t)places, 1, "zero-energy control", error);
+  f->yielded = memory_zeroed((size_t)places, 1, "zero-energy control", error);
+  bool failed = !f->used || !f->next || !f->found || !f->mark || !f->near || !f->yields || !f->yielded;
   for (int k = 0; k < hold_components(c->control); ++k) {
     failed |= !(f->whole[k] = places_array(places, "zero-energy control", error));
     if (f->whole[k]) memcpy(f->whole[k], c->hold[k], sizeof(double) * (size_t)places);
@@ -151,6 +156,8 @@ void correspondence_destroy_fading(Correspondence *c)
   for (int k = 0; k < 6; ++k) places_free(&f->whole[k]);
   free(f->mark);
   free(f->near);
+  free(f->yields);
+  free(f->yielded);
   free(f);
   c->fading = NULL;
 }
@@ -159,7 +166,7 @@ size_t correspondence_fading_bytes(const Correspondence *c)
 {
   if (!c->fading) return 0;
   const size_t numbers = 3 + (c->fading->whole[0] ? (size_t)hold_components(c->widest) : 0);
-  return (size_t)c->particles->places * (numbers * sizeof(double) + 1) + (size_t)c->particles->slices;
+  return (size_t)c->particles->places * (numbers * sizeof(double) + 3) + (size_t)c->particles->slices;
 }
 
 /** C of a slice's places, by factors. */
@@ -292,6 +299,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
         if (!(lost[0] | lost[1] | lost[2] | lost[3])) continue;
         f->mark[slice] = TRIED;
       }
+      for (int lane = 0; lane < LANES; ++lane) f->yields[place + lane] = f->yielded[place + lane] || left[lane] < 1;
       const bool cracked = softens && f->mark[slice] & (SOFTENED | BESIDE), flows = may && yields && !softens;
       if (cracked || flows) {
         const Lanes stored = stored_whole(c, sweep->displacement, place, sweep->carry + here);
@@ -342,11 +350,16 @@ static void fading_mark_family(const Correspondence *c, int64_t place, int rings
   }
 }
 
-/** Marks a place whose factor is below 1, its neighbours and their neighbours. */
+/** Marks a place whose factor is below 1 and its surroundings. Where laws yield without softening, a place that only the
+ *  bound on control has reached marks no others: the bound would spread over the whole body. */
 static void fading_mark_softened(const Correspondence *c, int64_t place)
 {
-  c->fading->near[place] |= SOFTENED;
+  uint8_t *near = &c->fading->near[place];
+  const bool softens = points_material(c->points, place)->softening_energy > 0;
+  *near |= SOFTENED;
   c->fading->mark[place / SLICE] |= SOFTENED;
+  if (!softens && !c->fading->yielded[place]) return;
+  *near |= SPREAD;
   fading_mark_family(c, place, 2);
 }
 
@@ -358,7 +371,7 @@ static bool find_softened(const Correspondence *c)
   bool softened = false;
   for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
     for (int64_t i = slice * SLICE; f->mark[slice] && i < (slice + 1) * SLICE; ++i)
-      if (f->next[i] < 1 && !(f->near[i] & SOFTENED)) fading_mark_softened(c, i);
+      if (f->next[i] < 1 && !(f->near[i] & SPREAD)) fading_mark_softened(c, i);
     softened |= (f->mark[slice] & SOFTENED) != 0;
   }
   return softened;
@@ -375,6 +388,7 @@ void correspondence_commit(void *formulation, bool well)
     if (!f->mark[slice]) continue;
     if (well) memcpy(f->used + first, f->next + first, bytes);
     if (well) memcpy(f->next + first, f->found + first, bytes);
+    if (well) memcpy(f->yielded + first, f->yields + first, SLICE);
     if (!well) set_hold(c, slice, f->used);
   }
   if (well) set_control(c, find_softened(c));
@@ -423,6 +437,10 @@ void correspondence_state(void *formulation, const char *part, StateList *list)
                   .count = c->particles->places,
                   .values = c->fading->used};
   state_add(list, &row, "zero-energy control", part);
+  row.values = c->fading->yielded;
+  row.kind = STATE_BYTES;
+  state_add(list, &row, "yielded, zero-energy control", part);
+  row.kind = STATE_NUMBERS;
   row.values = c->fading->next;
   row.care = &care;
   row.owner = c;

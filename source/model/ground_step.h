@@ -13,6 +13,11 @@ double ground_step_spacings(const Body *body, const Loading *loading);
  *  @param[in] spacings  height of the step in spacings */
 double ground_step_excess(const Domain *domain, double spacings);
 
+/** Adds a line that says how control of zero-energy modes may hold ground without a step in its surface, under footings and
+ *  in slopes without end; nothing where families resist slip lines by their strength alone or have no control. Begins
+ *  with some words, and ends with advice. */
+void ground_step_tell_level(const Domain *domain, const char *before, const char *advice, Text *text);
+
 /** Returns true if loads divide strengths in any stage. */
 bool ground_step_is_weakened(const Loading *loading);
 

@@ -747,6 +747,8 @@ static void describe_step(const breccia_model *model, Text *text)
              "out some %.0f %% too high at the most; halve the spacing and compare%s\n",
              step, 100 * ground_step_excess(&model->domain, step), ground_step_remedy(model));
   if (step > 0) ground_step_tell_low(&model->domain, &model->loading, "  strength reduction: ", text);
+  if (step == 0 && ground_step_is_weakened(&model->loading))
+    ground_step_tell_level(&model->domain, "  strength reduction: ", ground_step_remedy(model), text);
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)

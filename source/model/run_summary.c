@@ -449,6 +449,7 @@ static void tell_strength(const breccia_model *model, bool failed, Text *t)
     text_add(t, "at %.0f spacings across the height of the ground's step the factor may be some %.0f %% too high\n",
              step, 100 * ground_step_excess(&model->domain, step));
   if (step > 0) ground_step_tell_low(&model->domain, &model->loading, "", t);
+  if (any && step == 0) ground_step_tell_level(&model->domain, "", "", t);
   tell_held(model, t);
 }
 

@@ -117,6 +117,9 @@ int static_give_back(Solver *solver, Error *error);
  *  since its beginning, and no other load has changed. The loss of equilibrium is then the result, not a failure.
  *  @param[in] end  time of the increment */
 bool static_finds_reduction(const Solver *solver, double end);
+/** Returns true if nothing but strength reductions changes in the increment under way, and these grow. The body is then
+ *  judged by static_slides. @param[in] end  time of the increment */
+bool static_only_reduces(const Static *s, double end);
 /** Returns true if an increment that only divides strengths further ended in an equilibrium that the body cannot have:
  *  ground that slides may find rest with particles turned inside out, far away.
  *  @param[in] end  time of the increment */

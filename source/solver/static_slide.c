@@ -42,10 +42,14 @@ bool static_finds_reduction(const Solver *run, double end)
          slide_others_stay(s, begin, end) && slide_growth(s, begin, clock->time) > 0;
 }
 
+bool static_only_reduces(const Static *s, double end)
+{
+  return !s->spec->control && slide_growth(s, s->begin, end) > 0 && slide_others_stay(s, s->begin, end);
+}
+
 bool static_is_impossible(const Static *s, double end)
 {
-  return slide_growth(s, s->begin, end) > 0 && slide_others_stay(s, s->begin, end) &&
-         distortion_first_impossible(s->domain) >= 0;
+  return static_only_reduces(s, end) && distortion_first_impossible(s->domain) >= 0;
 }
 
 bool static_may_slide(const Static *s)

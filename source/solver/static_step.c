@@ -170,6 +170,8 @@ static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled, b
              newton_describe(&s->newton, outcome, words, sizeof words));
 }
 
+static const char static_slid[] = "with strengths divided further the body slides until it comes to rest elsewhere";
+
 /** Why the body finds no equilibrium, for a message that ends the run: where a crack has cut a piece off that is loaded, this is why, whatever the
  *  equations say. @return `words` */
 static const char *describe_failure(const Static *s, NewtonOutcome outcome, char *words, size_t size)
@@ -200,13 +202,16 @@ static bool has_fixed_images(const Domain *d)
 }
 
 /** No increment leads on from here, however short. */
-static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *error)
+static int fail(const Static *s, NewtonOutcome outcome, bool settled, bool slides, Error *error)
 {
   char words[320];
   const char *tried = "",
              *advice = "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
                        "the last pictures";
-  if (!settled) {
+  if (slides) {
+    snprintf(words, sizeof words, "%s", static_slid);
+    advice = "divide strengths by less in this stage, or make it the last one to find the factor of safety";
+  } else if (!settled) {
     snprintf(words, sizeof words,
              "the control of zero-energy modes as far as it fades leaves %.2g of the forces out of balance", s->lag);
     advice = s->spec->control ? "prescribe displacements with 'method: relaxation' instead of 'control'"
@@ -274,15 +279,16 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
 }
 
 /** The next stage goes on from where the body is: at the last state of rest, without the bonds that have broken since. */
-static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *warning)
+static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, bool slides, Text *warning)
 {
   const Static *s = run->own;
   char words[320], name[64];
   Clock *clock = &run->clock;
   text_add_warning(warning, "static: no equilibrium beyond time %g %s: %s; stage '%s' goes on from there", clock->time,
                    clock->time_unit,
-                   settled ? describe_failure(s, outcome, words, sizeof words)
-                           : "the control of zero-energy modes fades",
+                   slides    ? static_slid
+                   : settled ? describe_failure(s, outcome, words, sizeof words)
+                             : "the control of zero-energy modes fades",
                    solver_stage_name(run, clock->stage + 1, name, sizeof name));
   end_now(clock);
 }
@@ -468,12 +474,12 @@ int static_advance(Solver *run, Text *warning, Error *error)
       clock->time = end;
       iterations = s->newton.iterations;
       const int status = static_settle(run, &outcome, &settled, &way, error);
-      slides = finds && settled && outcome == NEWTON_CONVERGED && !status && static_slides(run);
+      slides = static_only_reduces(s, end) && settled && outcome == NEWTON_CONVERGED && !status && static_slides(run);
       if (settled && !slides) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
       if (status) return BRECCIA_FAILURE;
       if (settled && outcome == NEWTON_CONVERGED && !slides) break;
       if (settled && !slides && static_hands_over(s->spec)) {
-        hand_over(run, outcome, true, warning);
+        hand_over(run, outcome, true, false, warning);
         break;
       }
       if (settled && !slides) return fail_with_broken(s, outcome, error);
@@ -489,7 +495,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
         continue;
       }
       if (static_hands_over(s->spec)) {
-        hand_over(run, outcome, settled, warning);
+        hand_over(run, outcome, settled, slides, warning);
         static_count_empty_increment(clock);
         break;
       }
@@ -500,7 +506,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
         static_count_empty_increment(clock);
         break;
       }
-      fail(s, outcome, settled, error);
+      fail(s, outcome, settled, slides, error);
       return give_up(s, &before, BRECCIA_FAILURE);
     }
   }

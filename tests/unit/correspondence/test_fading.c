@@ -366,6 +366,74 @@ static void vertical_cuts_fail_at_their_limit_load(void **state)
   assert_false(cut_stands(1.05));
 }
 
+/** Returns the root of J_2 of a stress, or of half a strain with engineering shear strains. */
+static double shear_of(double *const tensor[6], int64_t place, bool is_strain)
+{
+  double squares = 0, mean = 0;
+  for (int k = 0; k < 3; ++k) mean += tensor[k][place] / 3;
+  for (int k = 0; k < 3; ++k)
+    squares += 0.5 * pow(tensor[k][place] - mean, 2) + pow(tensor[k + 3][place] / (is_strain ? 2 : 1), 2);
+  return sqrt(squares);
+}
+
+/** Returns true if the law at a place has yielded: the stress is less than that of Hooke's law. */
+static bool clay_has_yielded(const Points *points, int64_t place, double shear)
+{
+  const double elastic = 2 * shear * shear_of(points->strain, place, true);
+  return shear_of(points->stress, place, false) < (1 - 1e-6) * elastic;
+}
+
+static breccia_model *clay_below_a_footing(void)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: j2, density: 1, Young modulus: 1000, Poisson ratio: 0.3, yield stress: \"${sqrt(3)}\"}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [40, 16]}}}}\n"
+      "peridynamics: {space: plane strain, horizon: 2.015 spacings, influence: conical, strain: small, zero-energy "
+      "control: {silling: 0.2, fades: yielding}}\n"
+      "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, {on: {face: x-}, support: {held: across}}, {on: "
+      "{face: y+, inside: {box: {from: [0, 0], to: [4, 16]}}}, displacement: [0, -0.03], history: {ramp to: 1}}]\n"
+      "solve: {static: {increments: 4}}\n");
+}
+
+/** Control of zero-energy modes fades where clay yields and two families around it, and nowhere else. Points that the
+ *  bound on control had reached counted as yielded: beneath a footing that only just yielded the bound spread over the
+ *  whole ground, and cuts of 24 spacings found no equilibrium under a third of the weight that they can carry. */
+static void control_fades_beside_yielded_ground_only(void **state)
+{
+  (void)state;
+  const double shear = 1000 / 2.6, most = 2 * 2.015 + 1e-6;
+  breccia_model *m = clay_below_a_footing();
+  step_surely(m, INT64_MAX);
+  const Particles *p = m->domain.particles;
+  const Points *points = &m->domain.regions[0].points;
+  StateList list = {0};
+  domain_state(&m->domain, &list);
+  const StateRow *row = state_find(&list, "zero-energy control");
+  assert_non_null(row);
+  const double *factor = row->values;
+  int yielded = 0, faded = 0;
+  double farthest = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    yielded += clay_has_yielded(points, i, shear);
+    if (!(factor[i] < 1)) continue;
+    double nearest = INFINITY;
+    for (int32_t o = 0; o < p->count; ++o) {
+      const int32_t j = p->place_of[o];
+      if (clay_has_yielded(points, j, shear))
+        nearest = fmin(nearest, hypot(p->position[0][i] - p->position[0][j], p->position[1][i] - p->position[1][j]));
+    }
+    farthest = larger_of(farthest, nearest);
+    ++faded;
+  }
+  print_message("%d points have yielded, control has faded at %d, up to %g spacings off\n", yielded, faded, farthest);
+  assert_true(yielded > 3 && yielded < 100 && faded > yielded);
+  assert_true(farthest > 1 && farthest < most);
+  state_list_destroy(&list);
+  breccia_model_destroy(&m);
+}
+
 /** A slope of clay of 45 degrees, six spacings high, on ground of half that depth, has a factor of safety of 1.50 by
  *  slip circles. Pressure stores much more energy than shear, and its energy stays as the ground slides. Control that
  *  fades by the secant stiffness of both held the slope up to a factor of 4. With constant influence control still
@@ -489,30 +557,48 @@ static void forces_of_a_half_torn_bar_are_those_of_its_operator(void **state)
   breccia_model_destroy(&m);
 }
 
-static void half_torn_bars_restart_to_the_same_bits(void **state)
+/** Compares a run of so many steps with one that stops in between and goes on from its checkpoint. @param[in] models
+ *  three alike, which are destroyed */
+static void compare_with_restart(breccia_model *const models[3], int64_t stop, int64_t steps)
 {
-  (void)state;
-  breccia_model *whole = torn_bar(mazars, "plane strain", ""), *first = torn_bar(mazars, "plane strain", ""),
-                *second = torn_bar(mazars, "plane strain", "");
+  breccia_model *whole = models[0], *first = models[1], *second = models[2];
   char folder[] = "/tmp/breccia-XXXXXX", command[64];
   assert_non_null(mkdtemp(folder));
-  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = 500};
+  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = stop};
   assert_int_equal(breccia_model_run(first, &run, NULL), 0);
   run.restart = 1;
-  run.steps = 650;
+  run.steps = steps;
   assert_int_equal(breccia_model_run(second, &run, NULL), 0);
-  step_surely(whole, 650);
+  step_surely(whole, steps);
   assert_int_equal(formulation_of(second)->control, CONTROL_SCALAR);
   const size_t bytes = sizeof(double) * (size_t)whole->domain.particles->places;
   assert_memory_equal(formulation_of(second)->hold[0], formulation_of(whole)->hold[0], bytes);
   for (int k = 0; k < 3; ++k)
     assert_memory_equal(second->domain.particles->displacement.row[k], whole->domain.particles->displacement.row[k],
                         bytes);
-  breccia_model_destroy(&whole);
-  breccia_model_destroy(&first);
-  breccia_model_destroy(&second);
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m = models[k];
+    breccia_model_destroy(&m);
+  }
   snprintf(command, sizeof command, "rm -r %s", folder);
   assert_int_equal(system(command), 0);
+}
+
+static void half_torn_bars_restart_to_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *models[3];
+  for (int k = 0; k < 3; ++k) models[k] = torn_bar(mazars, "plane strain", "");
+  compare_with_restart(models, 500, 650);
+}
+
+/** Which points have yielded is state, too: control goes on to fade around them. */
+static void half_yielded_ground_restarts_to_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *models[3];
+  for (int k = 0; k < 3; ++k) models[k] = clay_below_a_footing();
+  compare_with_restart(models, 2, 4);
 }
 
 static void what_has_faded_stays_so_as_a_crack_closes(void **state)
@@ -585,11 +671,13 @@ int main(void)
       cmocka_unit_test(increments_out_of_balance_are_given_back),
       cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),
       cmocka_unit_test(vertical_cuts_fail_at_their_limit_load),
+      cmocka_unit_test(control_fades_beside_yielded_ground_only),
       cmocka_unit_test(confined_slopes_slide),
       cmocka_unit_test(slopes_stand_with_control_as_it_is),
       cmocka_unit_test(nothing_fades_before_the_law_softens),
       cmocka_unit_test(forces_of_a_half_torn_bar_are_those_of_its_operator),
       cmocka_unit_test(half_torn_bars_restart_to_the_same_bits),
+      cmocka_unit_test(half_yielded_ground_restarts_to_the_same_bits),
       cmocka_unit_test(what_has_faded_stays_so_as_a_crack_closes),
       cmocka_unit_test(noise_in_a_half_torn_bar_does_not_grow),
   };

@@ -934,10 +934,43 @@ static void factors_that_are_too_low_are_told(void **state)
   }
 }
 
+/** `check` tells that control of zero-energy modes may hold ground without a step in its surface, unless it fades beside
+ *  slip lines. */
+static void factors_of_level_ground_that_are_too_high_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *peridynamics, *reduction;
+    bool told;
+  } cases[] = {{"formulation: correspondence", ", {strength reduction: 2}", true},
+               {"formulation: correspondence, zero-energy control: {silling: 0.2, fades: yielding}",
+                ", {strength reduction: 2}", true},
+               {"formulation: correspondence, influence: conical, zero-energy control: {silling: 0.2, fades: yielding}",
+                ", {strength reduction: 2}", false},
+               {"formulation: ordinary", ", {strength reduction: 2}", false},
+               {"formulation: correspondence", "", false}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: j2, density: 2, Young modulus: 3e4, Poisson ratio: 0.3, yield stress: 60}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {%s, space: plane strain}\n"
+        "loads: [{on: {face: y-, layers: 2}, displacement: [0, 0]}, {on: {face: x-}, support: {held: periodic}}, "
+        "{gravity: [2, -9.81]}%s]\n"
+        "solve: {static: {increments: 1}}\n",
+        cases[k].peridynamics, cases[k].reduction);
+    const char *words = breccia_model_plausibility(m);
+    if (cases[k].told != (strstr(words, "control of zero-energy modes may hold ground that slides") != NULL))
+      fail_msg("case %zu: %s", k, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
                                      cmocka_unit_test(loads_that_are_hardly_meant_are_told),
+                                     cmocka_unit_test(factors_of_level_ground_that_are_too_high_are_told),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
                                      cmocka_unit_test(bars_that_are_hardly_meant_are_told),

@@ -163,8 +163,8 @@ static void slopes_without_end_slide_at_their_closed_form(void **state)
 }
 
 /** A slope without end of clay on two held layers, six particles high, whose right factor is 1.3, and the layers along
- * which it slides. */
-static breccia_model *shallow_slope(const char *more)
+ * which it slides. @param[in] last  stages after the reduction */
+static breccia_model *shallow_slope(const char *more, const char *last)
 {
   breccia_model *m = model_of(
       UNITS
@@ -175,9 +175,9 @@ static breccia_model *shallow_slope(const char *more)
       "loads: [{gravity: [\"${sin(lean)}\", \"${-cos(lean)}\"], history: {ramp to: 1}}, {on: {face: y-, layers: 2}, "
       "displacement: [0, 0]}, {on: {face: x+}, support: {held: periodic}}]\n"
       "solve: [{static: {increments: 2}}, {displacements: zero, loads: [{strength reduction: 2, history: {ramp to: "
-      "1}}], static: {increments: 20, smallest increment: 0.1}}]\n"
+      "1}}], static: {increments: 20, smallest increment: 0.1}}%s]\n"
       "pictures: []\n",
-      more);
+      more, last);
   m->threads = 1;
   return m;
 }
@@ -195,7 +195,7 @@ static void ground_that_slides_has_lost_its_equilibrium(void **state)
              "formulation: correspondence, strain: %s, influence: conical, zero-energy control: {silling: 0.2, fades: "
              "yielding}",
              strains[k]);
-    breccia_model *m = shallow_slope(more);
+    breccia_model *m = shallow_slope(more, "");
     Error *error = breccia_error_create();
     int status = 0;
     while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
@@ -254,6 +254,25 @@ static void stiff_materials_and_narrow_periods_leave_the_factor(void **state)
   }
   assert_near(factors[1], factors[0], 1e-9);
   assert_near(factors[2], factors[0], 0.026);
+}
+
+/** Ground that slides in a stage before the last one is told, too: the stage fails at the factor. It went on from the far side of the slide, with strengths divided by 2. */
+static void a_slide_before_the_last_stage_is_told(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      shallow_slope("formulation: correspondence, strain: small, influence: conical, zero-energy control: "
+                    "{silling: 0.2, fades: yielding}",
+                    ", {static: {increments: 1}}");
+  Error *error = breccia_error_create();
+  int status = 0;
+  while (!status && !solver_is_done(&m->solver)) status = breccia_model_step(m, 1, error);
+  print_message("%s\n", breccia_error_text(error));
+  assert_int_equal(status, BRECCIA_FAILURE);
+  holds_words(breccia_error_text(error), "slides until it comes to rest elsewhere; divide strengths by less");
+  assert_near(solver_strength_reduction(&m->solver), 1.3, 0.05 * 1.3);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
 }
 
 /** Loss of equilibrium is a factor of safety if a strength reduction alone has grown in the last stage. It is a failure
@@ -496,6 +515,7 @@ int main(void)
       cmocka_unit_test(slopes_without_end_slide_at_their_closed_form),
       cmocka_unit_test(ground_that_slides_has_lost_its_equilibrium),
       cmocka_unit_test(stiff_materials_and_narrow_periods_leave_the_factor),
+      cmocka_unit_test(a_slide_before_the_last_stage_is_told),
       cmocka_unit_test(a_factor_is_found_by_a_reduction_alone),
       cmocka_unit_test(a_stage_that_fails_at_once_leaves_the_factor_before),
       cmocka_unit_test(ground_turned_inside_out_has_no_factor),
