@@ -1,6 +1,7 @@
 #include "base/memory.h"
 #include "formulation/interface.h"
 #include "formulation/ordinary.h"
+#include "formulation/shape_tensor.h"
 
 #include "base/team.h"
 #include "base/tensor.h"
@@ -147,6 +148,44 @@ void ordinary_renew(void *formulation, int64_t slice)
   o->gaps[slice] = stretch_has_gaps(o->family, slice);
 }
 
+/* ---- flat families ---- */
+
+/** Returns true if the bonds of a particle lie nearly in a plane, or in the plane on a line, so that the family does not
+ *  resist every strain. A family of two layers has a roundness of 6 over the square of its horizon in spacings or more. */
+static bool family_is_flat(const Ordinary *o, int32_t place)
+{
+  const double flat = 0.05; /* roundness of a shape tensor */
+  return shape_tensor(o->family, place, o->dimensions, 0).roundness < flat;
+}
+
+/** Refuses blocks most of whose families are flat. A family of one layer finds no strain across the layer: it counts the
+ *  strain along the layer as dilatation in its place, and resists 2.4 to 2.7 times as much as the material. */
+static int check_flat_blocks(const Ordinary *o, Error *error)
+{
+  const double most = 0.5; /* share of the volume of a block */
+  const Particles *p = o->particles;
+  for (int block = 0; block < o->body->block_count; ++block) {
+    double flat = 0, volume = 0;
+    if (block_is_foreign(o->foreign, p, block)) continue;
+    for (int32_t place = 0; place < p->places; ++place) {
+      if (p->block[place / SLICE] != block || p->number[place] < 0 || body_outside(o->body, p->number[place])) continue;
+      volume += p->volume[place];
+      flat += family_is_flat(o, place) ? p->volume[place] : 0;
+    }
+    if (!(flat > most * volume)) continue;
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "block '%s': the bonds of %.0f %% of its particles lie %s, as in one layer of particles; their "
+                     "families find no "
+                     "strain across the layer, so that stiffness and stresses would be wrong by a factor of two or "
+                     "more; the horizon "
+                     "is %g: give the block at least two layers in every direction, a longer horizon%s",
+                     o->body->blocks[block]->head.name, 100 * flat / volume,
+                     o->dimensions == 3 ? "in a plane" : "on a line", o->family->horizon,
+                     o->dimensions == 3 ? ", or a lattice of the plane" : "");
+  }
+  return BRECCIA_OK;
+}
+
 /* ---- making ---- */
 
 void ordinary_destroy(void *formulation)
@@ -218,7 +257,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
   for (int block = 0; block < o->body->block_count && spec->weights == WEIGHTS_ISOTROPIC; ++block)
     ordinary_balance(o, block);
-  if (spec->weights == WEIGHTS_ISOTROPIC && ordinary_balance_families(o, error)) {
+  if (spec->weights == WEIGHTS_ISOTROPIC && (check_flat_blocks(o, error) || ordinary_balance_families(o, error))) {
     ordinary_destroy(o);
     return NULL;
   }

@@ -18,7 +18,8 @@ static void two_points_and_a_cube_have_the_forces_of_another_program(void **stat
   (void)state;
   /* validation U1: unit volumes from 1 to 2 apart: m = 1, theta = 3, e_d = 0, force density 18 K. */
   const char *moduli = "bulk modulus: 130e9, shear modulus: 78e9";
-  breccia_model *m = body_of(moduli, "horizon: 1.1", "spacing: 1, shape: {box: {particles: [2, 1, 1]}}");
+  breccia_model *m =
+      body_of(moduli, "horizon: 1.1, lattice weights: plain", "spacing: 1, shape: {box: {particles: [2, 1, 1]}}");
   const Particles *p = m->domain.particles;
   p->displacement.row[0][p->place_of[1]] = 1;
   compute_forces(m);

@@ -57,11 +57,11 @@ static void two_points_relax_like_a_standard_linear_solid(void **state)
   /* validation VE: dilatation taken as 0, stretched at once and held: t = t_infinity + lambda b e exp(-t / tau). Then drawn at
    * a steady rate, for which steps are exact. */
   const double share = 0.7, tau = 2, moment = 1, step = 0.3, e = 1e-3, shear = 78;
-  breccia_model *m =
-      model_of("materials: {m: {model: viscoelastic, density: 1, bulk modulus: 130, shear modulus: 78, "
-               "relaxing share: %g, relaxation time: %g}}\nperidynamics: {formulation: ordinary, horizon: 1.1}\n"
-               "body: {b: {material: m, spacing: 1, shape: {box: {particles: [2, 1, 1]}}}}\n" SOLVE,
-               share, tau);
+  breccia_model *m = model_of("materials: {m: {model: viscoelastic, density: 1, bulk modulus: 130, shear modulus: 78, "
+                              "relaxing share: %g, relaxation time: %g}}\nperidynamics: {formulation: ordinary, "
+                              "horizon: 1.1, lattice weights: plain}\n"
+                              "body: {b: {material: m, spacing: 1, shape: {box: {particles: [2, 1, 1]}}}}\n" SOLVE,
+                              share, tau);
   Domain *d = &m->domain;
   const Particles *p = d->particles;
   const double whole = 2 * 15 * shear / moment * e;

@@ -371,11 +371,47 @@ static void stresses_at_surfaces_are_hookes(void **state)
   }
 }
 
+/** Families of one layer find no strain across the layer, and are 2.4 (space) to 2.7 times (plane stress) too stiff. */
+static void blocks_of_one_layer_are_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *space, *block, *words;
+  } cases[] = {{"3-D", "shape: {box: {particles: [10, 6, 1]}}", "in a plane"},
+               {"3-D", "shape: {box: {particles: [10, 1, 1]}}", "in a plane"},
+               {"plane stress", "lattice: square, thickness: 1, shape: {box: {particles: [10, 1]}}", "on a line"},
+               {"plane strain, horizon: 1.5 spacings",
+                "lattice: square, thickness: 1, shape: {box: {particles: [10, 1]}}", "on a line"},
+               {"3-D", "shape: {box: {particles: [10, 6, 2]}}", NULL},
+               {"3-D, horizon: 6.015 spacings", "shape: {box: {particles: [14, 14, 2]}}", NULL},
+               {"plane stress, horizon: 1.5 spacings",
+                "lattice: square, thickness: 1, shape: {box: {particles: [10, 2]}}", NULL},
+               {"3-D, lattice weights: plain", "shape: {box: {particles: [10, 6, 1]}}", NULL}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = text_format("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.3}}\n"
+                             "peridynamics: {formulation: ordinary, space: %s}\n"
+                             "body: {b: {material: m, spacing: 1, %s}}\nsolve: {explicit: {steps: 1}}\n",
+                             cases[k].space, cases[k].block);
+    if (cases[k].words) {
+      char *words = refusal_of(deck);
+      print_message("%s\n", words);
+      assert_non_null(strstr(words, cases[k].words));
+      assert_non_null(strstr(words, "give the block at least two layers in every direction"));
+      free(words);
+    } else {
+      breccia_model *m = model_of("%s", deck);
+      breccia_model_destroy(&m);
+    }
+    free(deck);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bars_of_few_rows_are_as_long_as_hooke_says),
       cmocka_unit_test(beams_of_few_rows_bend_as_timoshenko_says),
+      cmocka_unit_test(blocks_of_one_layer_are_refused),
       cmocka_unit_test(check_tells_how_stiff_a_thin_body_is),
       cmocka_unit_test(halves_of_bars_move_as_whole_ones),
       cmocka_unit_test(halves_of_bars_of_two_formulations_move_as_whole_ones),
