@@ -104,6 +104,7 @@ static void *create(const FormulationParts *parts, Error *error)
   static const BondBasedSpec standard = {
       .calibration = CALIBRATION_EXPANSION, .surface_correction = SURFACE_AS_IS, .strength_of = STRENGTH_OF_BODY};
   const BondBasedSpec *spec = parts->keys ? parts->keys : &standard;
+  b->surface_corrected = spec->surface_correction == SURFACE_BY_ENERGY;
   b->strength_of_body = spec->strength_of == STRENGTH_OF_BODY;
   const Family *f = b->family;
   b->stiffness = memory_zeroed((size_t)b->body->block_count, sizeof(double), "bond constants", error);

@@ -44,9 +44,11 @@ struct BondBased {
   const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   const Influence *influence;
-  bool may_break;        /* as in FormulationParts */
-  bool crosses_rows;     /* elastic interfaces cross rows of particles */
-  bool strength_of_body; /* tensile strengths of the deck are those of the body, not of bonds */
+  bool may_break;         /* as in FormulationParts */
+  bool surface_corrected; /* bonds at surfaces are stiffened (bond_surface.c) */
+  bool in_series;         /* bonds through two linear materials have the stiffness of pieces in series */
+  bool crosses_rows;      /* elastic interfaces cross rows of particles */
+  bool strength_of_body;  /* tensile strengths of the deck are those of the body, not of bonds */
   double *
       stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */
   double *per_stress; /* [blocks] c / E */

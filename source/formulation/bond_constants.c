@@ -1,4 +1,5 @@
 #include "base/tensor.h"
+#include "formulation/body_modulus.h"
 #include "formulation/bond_based.h"
 #include "formulation/interface.h"
 #include "formulation/whole_family.h"
@@ -205,38 +206,110 @@ static void describe_directions(const BondBased *b, int block, double c[MANDEL][
   text_add(text, "; %.3f to %.3f in all directions\n", unit * least, unit * largest);
 }
 
-void bond_describe(const void *formulation, const Units *units, Text *text)
+/** Returns the stiffness with which the family of a place counts a bond: that of the material of the place, or, through
+ *  two linear materials, that of both pieces in series. */
+static double body_bond_stiffness(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond)
 {
-  (void)units;
+  const int own = b->particles->block[slice], other = b->particles->block[bond->neighbour / SLICE];
+  const bool joined = b->in_series && interfaces_join(bond_material(b, own), bond_material(b, other));
+  return bond_factor(b, slice, slot, lane) *
+         (joined ? (b->stiffness[own] + b->stiffness[other]) / 2 : b->stiffness[own]);
+}
+
+/** Returns w L s^2 / 2 of a bond in a uniform strain of 1 along an axis and of -across along the others, without w. */
+static double bond_in_tension(const double xi[3], double length, int axis, double across)
+{
+  const double n = xi[axis] / length, stretch = (1 + across) * n * n - across;
+  return length / 2 * stretch * stretch;
+}
+
+/** Returns twice the energy per volume of a family in uniform tension. */
+static double family_in_tension(const BondBased *b, int64_t place, int axis, double across)
+{
+  const Family *f = b->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  double sum = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, lane);
+    sum += body_bond_stiffness(b, slice, slot, lane, &bond) * bond.weight *
+           bond_in_tension(bond.xi, bond.length, axis, across);
+  }
+  return sum;
+}
+
+/** Returns the modulus that all families of a block show in uniform tension along an axis, over that of the deck. Bodies
+ *  of bonds contract across by a quarter in space and by a third in the plane. */
+static double body_young(const void *formulation, int block, int axis)
+{
   const BondBased *b = formulation;
+  const Particles *p = b->particles;
+  const double across = b->space == SPACE_3D ? 1.0 / 4 : 1.0 / 3;
+  double sum = 0, volume = 0;
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (p->block[place / SLICE] != block || p->number[place] < 0 || body_outside(b->body, p->number[place])) continue;
+    sum += p->volume[place] * family_in_tension(b, place, axis, across);
+    volume += p->volume[place];
+  }
+  return sum / volume / (material_young(bond_material(b, block)) * continuum_young(b));
+}
+
+static void describe_body(const BondBased *b, int block, Text *text)
+{
+  const double most = 0.03;
+  bool lattice_is_right = true;
+  for (int axis = 0; axis < b->body->dimensions; ++axis)
+    lattice_is_right &= fabs(bond_shown_young(b, block, axis) - 1) < most;
+  static const char *const remedies[2][2] = {
+      {", or 'surface correction: energy'; 'calibration: uniaxial' makes the lattice right along its axes",
+       ", or 'surface correction: energy'"},
+      {"; 'calibration: uniaxial' makes the lattice right along its axes", ""}};
+  const BodyModulus modulus = {.formulation = b,
+                               .young = body_young,
+                               .body = b->body,
+                               .particles = b->particles,
+                               .wrong = "strains",
+                               .remedy = remedies[b->surface_corrected][lattice_is_right],
+                               .tolerance = 0.05};
+  body_modulus_describe(&modulus, block, text);
+}
+
+/** Says which moduli the inside of a block shows by direction. */
+static void describe_inside(const BondBased *b, int block, Text *text)
+{
   const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
                space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};
-  for (int block = 0; block < b->body->block_count; ++block) {
-    if (block_is_foreign(b->foreign, b->particles, block)) continue;
-    const double unit = b->stiffness[block] / (material_young(bond_material(b, block)) * continuum_young(b));
-    const int dimensions = b->body->dimensions;
-    double c[MANDEL][MANDEL];
-    inner_stiffness(b, block, c);
-    if (isnan(young_along(c, dimensions, axis))) {
-      text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
-               b->body->blocks[block]->head.name);
-      continue;
-    }
-    if (dimensions == 1) {
-      text_add(text, "%s: a stretched bar shows %.3f of the wanted modulus\n", b->body->blocks[block]->head.name,
-               unit * young_along(c, dimensions, axis));
-      continue;
-    }
-    if (!b->body->lattices[block].chunks || b->body->lattices[block].type->turns < dimensions) {
-      describe_directions(b, block, c, unit, text);
-      continue;
-    }
+  const double unit = b->stiffness[block] / (material_young(bond_material(b, block)) * continuum_young(b));
+  const int dimensions = b->body->dimensions;
+  double c[MANDEL][MANDEL];
+  inner_stiffness(b, block, c);
+  if (isnan(young_along(c, dimensions, axis))) {
+    text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
+             b->body->blocks[block]->head.name);
+  } else if (dimensions == 1) {
+    text_add(text, "%s: a stretched bar shows %.3f of the wanted modulus\n", b->body->blocks[block]->head.name,
+             unit * young_along(c, dimensions, axis));
+  } else if (!b->body->lattices[block].chunks || b->body->lattices[block].type->turns < dimensions) {
+    describe_directions(b, block, c, unit, text);
+  } else {
     text_add(text,
              "%s: a uniaxial patch shows %.3f of the wanted modulus along the axes, %.3f along the diagonals of the %s",
              b->body->blocks[block]->head.name, unit * young_along(c, dimensions, axis),
              unit * young_along(c, dimensions, plane), dimensions == 2 ? "plane" : "faces");
     if (dimensions == 3) text_add(text, ", %.3f along those of space", unit * young_along(c, dimensions, space));
     text_add(text, "\n");
+  }
+}
+
+void bond_describe(const void *formulation, const Units *units, Text *text)
+{
+  (void)units;
+  const BondBased *b = formulation;
+  for (int block = 0; block < b->body->block_count; ++block) {
+    if (block_is_foreign(b->foreign, b->particles, block)) continue;
+    describe_inside(b, block, text);
+    if (b->body->dimensions > 1) describe_body(b, block, text);
   }
   if (b->crosses_rows) interfaces_describe(text);
 }

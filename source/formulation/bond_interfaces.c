@@ -80,6 +80,7 @@ int bond_correct_interfaces(BondBased *b, const FormulationParts *parts, Error *
     failed = !of.lack || bond_make_factors(b, of.interfaces.series, error);
     if (!failed) team_each(b->particles->places, bond_interface_lack, &of);
     if (!failed) team_each(b->particles->slices, bond_interface_slice, &of);
+    b->in_series = true;
     b->crosses_rows = interfaces_cross_rows(&of.interfaces);
   }
   free(of.lack);

@@ -1,6 +1,7 @@
 /* Stiffness of links (docs/theory.md 6). A link along n has per volume the energy w/2 (c L s^2 / 2 + 6 d g^2 / L) with its stretch s = n.e.n and the
  * shear g^2 = |e n|^2 - s^2, the particles turning with the body. Sums of that over a family must be the energy of the continuum. */
 #include "base/tensor.h"
+#include "formulation/body_modulus.h"
 #include "formulation/micropolar.h"
 #include "formulation/whole_family.h"
 
@@ -338,6 +339,42 @@ static void describe_mean(const Micropolar *m, int block, Text *text)
            m->body->lattices[block].chunks ? "lattice shows" : "links inside show in the mean", least, largest);
 }
 
+/** Returns twice the energy per volume of a family in a uniform strain of 1 along an axis and of -across along the others,
+ *  with the links of its block. */
+static double family_in_tension(const Micropolar *m, int64_t place, int axis, double across)
+{
+  const Family *f = m->family;
+  const int64_t slice = place / SLICE;
+  double sum = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+    const LinkStiffness *link = stiffness_of(m, m->particles->block[slice], bond.length);
+    const double n = bond.xi[axis] / bond.length, stretch = (1 + across) * n * n - across,
+                 shear = n * n + across * across * (1 - n * n) - stretch * stretch;
+    sum += bond.weight * (link->axial * bond.length / 2 * stretch * stretch + 6 * link->bending / bond.length * shear);
+  }
+  return sum;
+}
+
+/** Returns the modulus that all families of a block show in uniform tension along an axis, over that of the material. */
+static double body_young(const void *formulation, int block, int axis)
+{
+  const Micropolar *m = formulation;
+  const Particles *p = m->particles;
+  const Material *material = micropolar_material(m, block);
+  const bool held = m->space == SPACE_PLANE_STRAIN; /* strain across the plane */
+  const double young = material_young(material), poisson = young / (2 * material->shear) - 1,
+               across = held ? poisson / (1 - poisson) : poisson;
+  double sum = 0, volume = 0;
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (p->block[place / SLICE] != block || p->number[place] < 0 || body_outside(m->body, p->number[place])) continue;
+    sum += p->volume[place] * family_in_tension(m, place, axis, across);
+    volume += p->volume[place];
+  }
+  return sum / volume / (held ? young / (1 - poisson * poisson) : young);
+}
+
 static void describe_damage(const breccia_link *law, const char *name, Text *text)
 {
   text_add(text, "%s: links are damaged from a stretch of %.3g and carry nothing in tension beyond %.3g", name,
@@ -356,6 +393,13 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
   units_name(units, dimension_find("length"), length, sizeof length);
   units_name(units, dimension_find("force"), force, sizeof force);
   units_name(units, &stiffness_in_bending, bending, sizeof bending);
+  const BodyModulus modulus = {.formulation = m,
+                               .young = body_young,
+                               .body = m->body,
+                               .particles = m->particles,
+                               .wrong = "strains",
+                               .remedy = "",
+                               .tolerance = 0.05};
   for (int block = 0; block < m->body->block_count; ++block) {
     if (block_is_foreign(m->foreign, m->particles, block)) continue;
     const LinkConstants *constants = &m->constants[block];
@@ -368,6 +412,7 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
                constants->of[l].axial * volume * volume, force, constants->of[l].bending * volume * volume, bending,
                l + 1 < constants->lengths ? ";" : "\n");
     if (!constants->lengths) describe_mean(m, block, text);
+    if (m->body->dimensions > 1) body_modulus_describe(&modulus, block, text);
     if (m->damage && isfinite(m->damage->laws[block].tension_begin))
       describe_damage(&m->damage->laws[block], name, text);
   }

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "formulation/body_modulus.h"
 #include "formulation/interface.h"
 #include "formulation/ordinary.h"
 #include "formulation/shape_tensor.h"
@@ -317,60 +318,20 @@ static void describe_lattice(const Ordinary *o, int block, Text *text)
         name, least, largest);
 }
 
-/** Sizes of a block between its outermost particles, in `size`, and the longest. */
-static double block_sizes(const Ordinary *o, int block, double size[3])
-{
-  const Particles *p = o->particles;
-  double longest = 0;
-  for (int k = 0; k < 3; ++k) {
-    double low = INFINITY, high = -INFINITY;
-    for (int64_t place = 0; place < p->places; ++place) {
-      if (p->block[place / SLICE] != block || p->number[place] < 0) continue;
-      low = fmin(low, p->position[k][place]);
-      high = fmax(high, p->position[k][place]);
-    }
-    size[k] = high - low;
-    longest = fmax(longest, size[k]);
-  }
-  return longest;
-}
-
-/** Adds the least and the largest share of Young's modulus that the families of a block show in tension, along axes
- *  that are not much shorter than the longest one, as thin parts are stretched and bent along themselves. */
-static void describe_tension(const Ordinary *o, int block, Text *text)
-{
-  const double most = 0.03, not_short = 0.5;
-  double size[3], furthest = 0, least = INFINITY, largest = 0;
-  const double longest = block_sizes(o, block, size);
-  for (int axis = 0; axis < o->dimensions; ++axis) {
-    const double shown = ordinary_body_young(o, block, axis);
-    least = fmin(least, shown);
-    largest = fmax(largest, shown);
-    if (fabs(shown - 1) > fabs(furthest) && size[axis] >= not_short * longest) furthest = shown - 1;
-  }
-  text_add(
-      text,
-      "%s: stretched evenly, all families of the body together show %.3f to %.3f of the wanted Young's modulus along "
-      "its axes",
-      o->body->blocks[block]->head.name, least, largest);
-  if (fabs(furthest) > most)
-    text_add(
-        text,
-        "; in tension along its length the body is %.0f %% %s than asked, and strains%s of particles under given loads "
-        "are as much too %s; take more rows of particles across",
-        100 * fabs(furthest), furthest > 0 ? "stiffer" : "softer", o->fourth ? " and stresses" : "",
-        furthest > 0 ? "small" : "large");
-  text_add(text, "\n");
-}
-
 void ordinary_describe(const void *formulation, const Units *units, Text *text)
 {
   (void)units;
   const Ordinary *o = formulation;
+  const BodyModulus modulus = {.formulation = o,
+                               .young = ordinary_body_young,
+                               .body = o->body,
+                               .particles = o->particles,
+                               .wrong = o->fourth ? "strains and stresses" : "strains",
+                               .remedy = ""};
   for (int block = 0; block < o->body->block_count; ++block) {
     if (block_is_foreign(o->foreign, o->particles, block)) continue;
     if (o->body->lattices[block].chunks) describe_lattice(o, block, text);
-    describe_tension(o, block, text);
+    body_modulus_describe(&modulus, block, text);
   }
   if (o->crosses_rows) interfaces_describe(text);
 }
