@@ -16,8 +16,14 @@ problems = {}
 
 def problem(name, material, body, peridynamics, loads, solve, watch, more="", files=None):
     """Adds a problem: `loads` and `watch` are lists of entries, `body` is the content of the block."""
-    text = "units: {length: m, force: N, time: s}\n"
-    text += f"materials: {{m: {material}}}\nbody: {{b: {{material: m, {body}}}}}\n"
+    blocks(name, {"m": material}, {"b": f"material: m, {body}"}, peridynamics, loads, solve, watch, more, files)
+
+
+def blocks(name, materials, body, peridynamics, loads, solve, watch, more="", files=None):
+    """Adds a problem of several materials and blocks, by their names."""
+    text = "units: {length: m, force: N, time: s}\nmaterials:\n"
+    text += "".join(f"  {key}: {law}\n" for key, law in materials.items()) + "body:\n"
+    text += "".join(f"  {key}: {{{block}}}\n" for key, block in body.items())
     text += f"peridynamics: {peridynamics}\n{more}loads:\n" + "".join(f"  - {{{load}}}\n" for load in loads)
     text += f"solve: {solve}\nwatch:\n" + "".join(f"  {entry}\n" for entry in watch)
     problems[name] = (text + "results: {number: 0}\npictures: []\n", files or {})
@@ -135,13 +141,19 @@ END = 11.5 * SIXTH
 SLENDER_PLACES = [(-11.5 * SIXTH, SIXTH, 0.0), (-SIXTH / 2, 0.0, 0.0), (SIXTH / 2, SIXTH, -SIXTH),
                   (7.5 * SIXTH, SIXTH, SIXTH), (6.5 * SIXTH, 0.0, SIXTH)]
 EDGES = [("free, 0, free", "y-", x) for x in "-+"] + [("free, free, 0", "z-", x) for x in "-+"]
-problem("bar between grips", "{model: elastic, density: 8e-9, bulk modulus: 1.515e5, shear modulus: 7.813e4}",
-        lattice(SIXTH, "[24, 3, 3]", f"[{-END}, {-SIXTH}, {-SIXTH}]"), LPS % (0.5025, ""),
-        ["on: {face: x-, layers: 4}, displacement: [-0.02, free, free], history: {ramp to: 1}",
-         "on: {face: x+, layers: 4}, displacement: [0.02, free, free], history: {ramp to: 1}"]
-        + [f"on: {{all of: [{{face: {face}}}, {{face: x{end}}}]}}, displacement: [{held}]"
-           for held, face, end in EDGES],
+GRIPS = ([f"on: {{face: x{end}, layers: 4}}, displacement: [{end}0.02, free, free], history: {{ramp to: 1}}"
+          for end in "-+"]
+         + [f"on: {{all of: [{{face: {face}}}, {{face: x{end}}}]}}, displacement: [{held}]"
+            for held, face, end in EDGES])
+SOFT = "density: 8e-9, bulk modulus: 1.515e5, shear modulus: 7.813e4"
+problem("bar between grips", f"{{model: elastic, {SOFT}}}",
+        lattice(SIXTH, "[24, 3, 3]", f"[{-END}, {-SIXTH}, {-SIXTH}]"), LPS % (0.5025, ""), GRIPS,
         "{static: {increments: 2, residual: 1e-12}}", readings(SLENDER_PLACES, ("displacement", "force")))
+# The right half has a law that could flow, and does not.
+blocks("bar of two laws", {"left": f"{{model: elastic, {SOFT}}}", "right": f"{{model: j2, {SOFT}, yield stress: 1e5}}"},
+       {name: f"material: {name}, " + lattice(SIXTH, "[12, 3, 3]", f"[{first}, {-SIXTH}, {-SIXTH}]")
+        for name, first in (("left", -END), ("right", SIXTH / 2))}, LPS % (0.5025, ""), GRIPS,
+       "{static: {increments: 2, residual: 1e-12}}", readings(SLENDER_PLACES, ("displacement", "force")))
 
 BRICK_PLACES = [(-1.0, -0.5, -0.5), (1.0, -0.5, -0.5), (0.0, 0.5, -0.5),
                 (-1.0, -0.5, 0.5), (1.0, -0.5, 0.5), (0.0, 0.5, 0.5)]
