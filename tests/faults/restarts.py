@@ -17,6 +17,7 @@ import itertools
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -48,11 +49,23 @@ BODIES = {
     "mazars in plane strain": (f"model: mazars, {ELASTIC}, tensile strength: 3 MPa, fracture energy: 100 N/m", "formulation: correspondence, space: plane strain", "", ""),
     "softening bonds": (f"model: exponential-softening, {LINE}, tensile strength: 3 MPa, fracture energy: 100 N/m", BONDS, "failure: {near grips: hold}\n", ""),
     "bilinear bonds": (f"model: bilinear-softening, {LINE}, tensile strength: 3 MPa, fracture energy: 100 N/m", BONDS, "", ""),
+    "trilinear bonds": (f"model: trilinear-softening, {LINE}, tensile strength: 3 MPa, fracture energy: 100 N/m", BONDS, "", ""),
+    "brittle bonds": (f"model: elastic-brittle, {LINE}, tensile strength: 3 MPa", BONDS, "", ""),
+    "crushing bonds": (f"model: fib-concrete, {LINE}, tensile strength: 3 MPa, fracture energy: 100 N/m, compressive strength: 30 MPa", BONDS, "", ""),
+    "park bonds": ("model: kent-scott-park, density: 2.4, compressive strength: 30 MPa, residual strength: 6 MPa", BONDS, "", ""),
+    "concrete bonds": ("model: concrete02, density: 2.4, compressive strength: 30 MPa, residual strength: 6 MPa, tensile strength: 2 MPa, "
+                       "tension softening: 2 GPa", BONDS, "", ""),
+    "confined bonds": (f"model: mander, {LINE}, compressive strength: 30 MPa, confining pressure: 2 MPa", BONDS, "", ""),
     "plastic bonds": (f"model: menegotto-pinto, {LINE}, yield stress: 2 MPa", BONDS, "", ""),
+    "perfectly plastic bonds": (f"model: elastic-perfectly-plastic, {LINE}, yield stress: 2 MPa", BONDS, "", ""),
+    "bilinear plastic bonds": (f"model: steel-bilinear, {LINE}, yield stress: 2 MPa, hardening ratio: 0.05, compression shift: 0.1", BONDS, "", ""),
+    "hybrid": (f"model: mazars, {ELASTIC}, tensile strength: 3 MPa, fracture energy: 100 N/m", "formulation: hybrid, space: plane stress", "", ""),
+    "hybrid flow": (f"model: j2, {ELASTIC}, yield stress: 2 MPa", "formulation: hybrid, space: plane strain", "failure: {critical stretch: 3e-4, near grips: hold}\n", ""),
     "flow": (f"model: j2, {ELASTIC}, yield stress: 2 MPa", "formulation: ordinary, space: plane strain", "", ""),
     "links": (f"model: link-damage, {ELASTIC}, tensile stretch: 1e-4, fracture energy: 100 N/m", "formulation: micropolar, space: plane stress", "", ""),
     "bars": (f"model: exponential-softening, {LINE}, tensile strength: 3 MPa, fracture energy: 100 N/m", BONDS, BARS, STEEL),
 }
+WITHOUT_HISTORY = ("elastic", "elastic-1d")
 DECK = """\
 units: {{length: m, force: kN, time: s}}
 materials:
@@ -152,6 +165,14 @@ class Case:
         return len(stops), whole.returncode, problems
 
 
+def laws_without_body(command):
+    """Laws of the program that remember something and that no body has."""
+    words = subprocess.run([command, "models"], capture_output=True, text=True, check=True).stdout
+    laws = re.findall(r"^([\w-]+): ", words.split("\nFormulations")[0], re.MULTILINE)
+    named = {law for body in BODIES.values() for law in re.findall(r"model: ([\w-]+)", body[0] + body[3])}
+    return [law for law in laws if law not in named and law not in WITHOUT_HISTORY]
+
+
 def all_cases(options):
     bodies = [options.body] if options.body else list(BODIES)
     sequences = [options.solvers] if options.solvers else ["".join(s) for n in (2, 3) for s in itertools.product(SOLVERS, repeat=n)]
@@ -168,6 +189,9 @@ def main():
     parser.add_argument("--body", choices=BODIES)
     parser.add_argument("--solvers")
     options = parser.parse_args()
+    missing = laws_without_body(options.command)
+    if missing:
+        sys.exit(f"no body has the laws {', '.join(missing)}: add one of each to BODIES")
     cases = all_cases(options)
     if options.cases and len(cases) > options.cases:
         random.Random(options.seed).shuffle(cases)
