@@ -252,7 +252,7 @@ def spiral_factor(cohesion, degrees):
     return low
 
 
-TALL = (12, 24)  # heights, in spacings of 1 m
+TALL = (8, 12)  # heights, in spacings of 1 m
 SPECIFIC = 20.0  # unit weight (kN/m3)
 DEEP = 5.53  # gamma H / s_u of a slope of 45 degrees on rock at half its height below the toe (docs/theory.md, 8.7)
 
@@ -278,7 +278,7 @@ def ground(material, corners, loads=None, periodic=False):
         "loads": [*sides, {"on": {"face": "y-", "layers": 2}, "displacement": [0, 0]}, {**(loads or {"gravity": [0, -10]}), "history": {"ramp to": 1}}],
         "solve": [{"static": {"increments": 5}},
                   {"displacements": "zero", "loads": [{"strength reduction": 2, "name": "weaken", "history": {"ramp to": 1}}],
-                   "static": {"increments": 40, "smallest increment": 0.1}}],
+                   "static": {"increments": 40, "smallest increment": 0.25}}],
         "watch": {"f": {"load": "weaken", "every": 1}},
     }
 

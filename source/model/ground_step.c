@@ -66,9 +66,9 @@ double ground_step_excess(const Domain *d, double spacings)
   /* Measured factors over closed forms (docs/choosing.md) for vertical cuts:
    *   ordinary families            8 spacings           1.14
    *   control with full stiffness  16 spacings          1.29 or more
-   *   control that fades           6, 12, 24 spacings   1.04, 1.024, 0.995 (12 with friction 1.044)
+   *   control that fades           8, 12, 24 spacings   1.04, 1.03, 0.995 (8, 12 with friction 1.075, 1.055)
    * The first two excesses decrease with the square root of the number of spacings at best, and have one bound. */
-  const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.55;
+  const double most = 0.35, few = 16, freely_most = 0.1, freely_spacings = 0.7;
   if (ground_step_slips_freely(d)) return fmin(freely_most, freely_spacings / spacings);
   return most * fmin(1, sqrt(few / spacings));
 }
