@@ -282,6 +282,18 @@ static void give_memory_back(void)
 #endif
 }
 
+static bool main_obeys; /* a verb is at work */
+
+/** Reports at exit that a library ended the program within a verb. Sequential MUMPS does so with status 0 where memory is
+ *  out; the status becomes that of a failure. */
+static void main_report_early_end(void)
+{
+  if (!main_obeys) return;
+  fprintf(stderr, "breccia: out of memory: a library ended the program\n");
+  fflush(stdout);
+  _exit(BRECCIA_FAILURE);
+}
+
 int main(int argc, char **argv)
 {
   H5dont_atexit(); /* all files are closed by then; of one that the disk did not let it read HDF5 1.10 keeps parts, and would print long lines about them */
@@ -291,5 +303,9 @@ int main(int argc, char **argv)
   signal(
       SIGXFSZ,
       SIG_IGN); /* a file beyond the limit is a write that fails, of which the run tells and from which it can go on */
-  return close_output(obey(argc, argv));
+  atexit(main_report_early_end);
+  main_obeys = true;
+  const int status = obey(argc, argv);
+  main_obeys = false;
+  return close_output(status);
 }

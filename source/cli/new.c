@@ -101,7 +101,7 @@ static bool is_test(const Example *example, char **title)
   char *words = breccia_deck_title((const char *)example->files[0].bytes, &test);
   if (!words) {
     fprintf(stderr, "breccia: out of memory: the title of an example\n");
-    exit(BRECCIA_FAILURE);
+    _Exit(BRECCIA_FAILURE);
   }
   if (title)
     *title = words;

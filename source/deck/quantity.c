@@ -220,6 +220,7 @@ static bool read_base_units(Units *units, const char *const names[3], Error *err
   static const char *const examples[3] = {"m, mm or ft", "N, kN or lbf", "s or ms"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
+    bool lacks_memory = false;
     ut_unit *given = units_parse(units, names[k], &reason), *standard = ut_parse(set->system, wanted[k], UT_ASCII);
     if (!given)
       text_add(&reason, "; expected a unit of %s, like %s", what[k], examples[k]);
@@ -227,6 +228,7 @@ static bool read_base_units(Units *units, const char *const names[3], Error *err
       text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
     else {
       cv_converter *converter = ut_get_converter(given, standard);
+      lacks_memory = !converter;
       units->size[k] = converter ? cv_convert_double(converter, 1) : NAN;
       if (converter && !(units->size[k] > 0))
         text_add(&reason, "unit '%s' is none to count %s in: it must be greater than 0", names[k], what[k]);
@@ -234,8 +236,9 @@ static bool read_base_units(Units *units, const char *const names[3], Error *err
     }
     ut_free(given);
     ut_free(standard);
+    if (lacks_memory) error_add(error, BRECCIA_FAILURE, "out of memory: units");
     if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", text_words(&reason));
-    const bool failed = reason.length > 0;
+    const bool failed = lacks_memory || reason.length > 0;
     text_free(&reason);
     if (failed) return false;
   }

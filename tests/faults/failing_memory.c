@@ -152,10 +152,17 @@ __attribute__((constructor)) static void begin(void)
   fail_at = atol(at);
   all_from_there = on && *on == '1';
   everybody = whose && !strcmp(whose, "all");
-  if (file && *file && !((count_file = fopen(file, "w")) && !setvbuf(count_file, NULL, _IOLBF, 0))) abort();
+  /* Without a buffer of its own the file would ask for one within the first call that is counted, without end. */
+  static char buffer[BUFSIZ];
+  if (file && *file && !((count_file = fopen(file, "w")) && !setvbuf(count_file, buffer, _IOLBF, sizeof buffer)))
+    abort();
   unsetenv("LD_PRELOAD");
-  backtrace(&frame, 1); /* loads what it needs */
-  for (int k = 0; k < 5; ++k) signal((const int[]){SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGVTALRM}[k], tell_end);
+  backtrace(&frame, 1);       /* loads what it needs */
+  static char stack[1 << 16]; /* for libraries that call themselves until theirs is full */
+  sigaltstack(&(stack_t){.ss_sp = stack, .ss_size = sizeof stack}, NULL);
+  for (int k = 0; k < 5; ++k)
+    sigaction((const int[]){SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGVTALRM}[k],
+              &(struct sigaction){.sa_handler = tell_end, .sa_flags = SA_ONSTACK}, NULL);
   setitimer(ITIMER_VIRTUAL, &(struct itimerval){.it_value.tv_sec = LONGEST}, NULL);
   counting = true;
 }

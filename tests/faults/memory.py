@@ -212,7 +212,8 @@ TIMES = re.compile(rb"[0-9.]+ ns per directed bond|[0-9.]+ s for [0-9]+ steps|\"
 TOLD = re.compile("out of memory|Cannot allocate memory")
 
 # what crashes by itself when it is refused memory, or tries again without end
-KNOWN_ENDS = ("crash in libdmumps", "crash in libmumps", "crash in libgfortran", "crash in libhdf5", "crash in libudunits2", "crash in libfontconfig", "no end in libfontconfig")
+KNOWN_ENDS = ("crash in libarpack", "crash in libdmumps", "crash in libfontconfig", "crash in libfyaml", "crash in libgfortran", "crash in libhdf5",
+              "crash in libmumps", "crash in libudunits2", "no end in libfontconfig")
 CASES = ("study", "failure")  # verbs of which each case tells it, and whose own last line says in which file there is more
 LOG = re.compile(r"/log\.txt tells more$")
 KEPT = re.compile("^kept: .*$", re.M)
