@@ -160,6 +160,7 @@ int tensile_strength_set(Domain *d, const DeckReader *reader, const SectionList 
 
 void tensile_strength_describe(const Domain *d, Text *text)
 {
+  const double tolerated = 1.05; /* strength of a body whose bonds yield, over that of its bonds */
   for (int block = 0; block < d->body.block_count; ++block) {
     int k = 0;
     const Region *region = strength_region(d, block, &k);
@@ -168,7 +169,15 @@ void tensile_strength_describe(const Domain *d, Text *text)
     if (!region || strength_is_known(d, block) || !strength_band(d, region, block, &band)) continue;
     const char *const name = d->body.blocks[block]->head.name;
     const Material *m = &d->materials[k];
-    if (region->type->strength_of_body && region->type->strength_of_body(region->formulation) && material_can_share(m))
+    if (!(m->softening_energy > 0)) {
+      if (band.most > tolerated)
+        text_add(text,
+                 "%s: a body of bonds that yield, pulled one way, carries %.3g to %.3g times the stress of its "
+                 "bonds by the direction, as slanted bonds yield later; give the yield stress over %.3g to have the "
+                 "largest\n",
+                 name, band.least, band.most, band.most);
+    } else if (region->type->strength_of_body && region->type->strength_of_body(region->formulation) &&
+               material_can_share(m))
       text_add(text,
                "%s: bonds carry %.3g of the tensile strength, so that a body pulled one way carries %.3g to %.3g of it "
                "by the direction\n",

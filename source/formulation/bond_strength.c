@@ -1,6 +1,8 @@
 /* Strength of a body of softening bonds: largest stress of an infinite body under uniaxial tension with free sides,
  * over the largest stress of one bond. The file also computes the largest stress in uniaxial compression, over the
- * compressive strength of the law. The stress of slanted bonds still increases when bonds along the pull have begun to
+ * compressive strength of the law. For laws that yield it computes the stress of the body beyond yielding over that of a
+ * bond at the same strain: slanted bonds yield later, and bonds across the pull press until they yield, too. With perfect
+ * plasticity an isotropic plane family carries 1.41 times the yield stress. The stress of slanted bonds still increases when bonds along the pull have begun to
  * soften, so that a body carries more than its bonds (docs/theory.md 2). The stress of a uniform strain e is
  *   sigma = 1/2 sum (c / E) w L sigma_b(n . e n) n n
  * over the bonds of a particle, with the stress sigma_b of the law. For particles from a file the sum is the mean over
@@ -18,6 +20,13 @@
 /* STRENGTH_TURNS: iterations with tangents; STRENGTH_ELASTIC_TURNS: iterations with the elastic stiffness.
  * STRENGTH_FAMILIES: number of families whose mean represents particles from a file. */
 enum { STRENGTH_STEPS = 400, STRENGTH_TURNS = 40, STRENGTH_ELASTIC_TURNS = 400, STRENGTH_FAMILIES = 8, PARTS = 6 };
+
+/* Number of increments of a pull beyond yielding. */
+enum { YIELD_STEPS = 100 };
+
+/* Strain of that pull over the strain at yielding; largest strain at yielding. Stresses across the pull vanish up to
+ * `yield_side_tolerance` times the stress of a bond. */
+static const double yield_multiple = 20, yield_largest = 0.2, yield_side_tolerance = 1e-4;
 
 /* Increments of the pull, as a share of the strain at which the law begins to soften; the pull ends where the stress
  * has fallen to this share of the peak. Stresses across the pull vanish to this share of the peak. */
@@ -258,13 +267,68 @@ static double strength_of_bond(const Material *m, double step)
   return most;
 }
 
+/** Computes the stress of one bond at a strain that it reaches in equal increments.
+ *  @return NaN if the law could not be integrated */
+static double stress_of_bond(const Material *m, double strain, int increments)
+{
+  StrengthBonds one = {.material = m, .space = SPACE_BAR, .count = 1, .parts = 1};
+  StrengthState state = {.strain = {0}, .stress = {NAN}};
+  bool going = strength_reserve(&one);
+  if (going) {
+    one.share[0][0] = one.weight[0] = 1;
+    one.length[0] = m->length;
+    strength_begin_histories(&one);
+  }
+  for (int k = 1; going && k <= increments; ++k) {
+    state.strain[0] = k * strain / increments;
+    going = strength_try(&one, &state);
+    strength_commit(&one);
+  }
+  strength_free(&one);
+  return going ? state.stress[0] : NAN;
+}
+
+/** Returns the strain at which a bond has yielded in tension: the first one, by steps of 5 %, at which the stress is less
+ *  than 0.9 of the elastic stress; NAN if the bond does not yield below `yield_largest`. */
+static double yield_strain(const Material *m)
+{
+  const double elastic_share = 0.9, growth = 1.05, smallest = 1e-6;
+  for (double strain = smallest; strain < yield_largest; strain *= growth) {
+    const double stress = stress_of_bond(m, strain, 1);
+    if (isnan(stress) || stress < elastic_share * material_young(m) * strain) return isnan(stress) ? NAN : strain;
+  }
+  return NAN;
+}
+
+/** Returns the stress of a body whose bonds yield in uniaxial tension, over that of a bond at the same strain of
+ *  `yield_multiple` times that at yielding; NaN if bonds do not yield, or tear or soften below that strain. */
+static double strength_of_yielding(const BondBased *b, int block, const double n[3])
+{
+  const Material *m = bond_material(b, block);
+  const double begin = yield_strain(m), end = yield_multiple * begin;
+  if (isnan(begin)) return NAN;
+  const double first = stress_of_bond(m, begin, YIELD_STEPS), bond = stress_of_bond(m, end, YIELD_STEPS);
+  if (!(first > 0) || !(bond >= strength_fallen * first)) return NAN;
+  StrengthBonds s = {.material = m, .space = b->space, .parts = b->body->dimensions == 2 ? 3 : PARTS};
+  StrengthState state = {.strain = {0}};
+  bool going = strength_begin(&s, b, block, n);
+  for (int k = 1; going && k <= YIELD_STEPS; ++k) {
+    state.strain[0] = k * end / YIELD_STEPS;
+    going = strength_solve_sides(&s, yield_side_tolerance * bond, &state);
+    strength_commit(&s);
+  }
+  strength_free(&s);
+  return going ? state.stress[0] / bond : NAN;
+}
+
 double bond_uniaxial_strength(const void *formulation, int block, const double n[3])
 {
   const BondBased *b = formulation;
   const int dimensions = b->body->dimensions;
   if (dimensions < 2 || block_is_foreign(b->foreign, b->particles, block)) return NAN;
   const Material *m = bond_material(b, block);
-  if (m->remote || m->law->components != 1 || !(m->softening_energy > 0)) return NAN;
+  if (m->remote || m->law->components != 1 || m->law->linear) return NAN;
+  if (!(m->softening_energy > 0)) return strength_of_yielding(b, block, n);
   const double begin = sqrt(2 * m->softening_energy / material_young(m)), step = strength_increment * begin,
                bond = strength_of_bond(m, step);
   StrengthBonds s = {.material = m, .space = b->space, .parts = dimensions == 2 ? 3 : PARTS};

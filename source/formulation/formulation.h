@@ -301,8 +301,9 @@ struct FormulationType {
    *  @return NaN for particles that stand in no lattice */
   double (*crack_length)(const void *formulation, int block, const double normal[3]);
   /** Returns the strength of the inside of a block under uniaxial tension along a unit vector with free sides, over the
-   * strength of its softening law as prepared. NULL: equal to the strength of the law.
-   *  @return NaN for bars and lines, and for laws that do not soften or are in servers */
+   * strength of its softening law as prepared; for laws that yield, the stress well beyond yielding over that of one bond.
+   * NULL: equal to the strength of the law.
+   *  @return NaN for bars and lines, and for laws that neither soften nor yield or are in servers */
   double (*uniaxial_strength)(const void *formulation, int block, const double direction[3]);
   /** Returns the strength of the lattice of a block in uniaxial compression along a unit vector with free sides, over
    * the compressive strength of its law. NULL: unknown.

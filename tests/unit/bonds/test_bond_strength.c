@@ -302,9 +302,44 @@ static void bending_strength_is_told(void **state)
   breccia_model_destroy(&m);
 }
 
+/** With perfect plasticity six neighbours carry the yield stress along a row and 1.5 times as much across, as above. In an
+ *  isotropic plane family bonds within 66.2 degrees of the pull yield in tension and all others in compression, as
+ *  theta / 2 - sin(2 theta) / 4 = pi / 8 without stress across, and the body carries 1.411 times the yield stress. */
+static void bodies_of_yielding_bonds_carry_more_than_their_bonds(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *law, *block, *horizon;
+    double x, y, within; /* strength along x and y */
+  } cases[] = {{"elastic-perfectly-plastic, yield stress: 3", "hexagonal", "5.5", 1, 1.5, 1e-3},
+               {"elastic-perfectly-plastic, yield stress: 3", "square", "5.015 spacings", 1.411, 1.411, 0.03},
+               {"elastic-perfectly-plastic, yield stress: 3", "square", "3.015 spacings", 1.411, 1.411, 0.06},
+               {"elastic-1d", "square", "3.015 spacings", NAN, NAN, 0},
+               {"elastic-brittle, tensile strength: 3", "square", "3.015 spacings", NAN, NAN, 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: mm, force: N, time: s}\nmaterials: {m: {model: %s, density: 2.4e-9, Young modulus: 30000}}\n"
+        "body: {b: {material: m, lattice: %s, spacing: 5, thickness: 10, shape: {box: {particles: [14, 14]}}}}\n"
+        "peridynamics: {formulation: bond-based, space: plane stress, horizon: %s}\nsolve: {explicit: {steps: 1}}\n",
+        cases[k].law, cases[k].block, cases[k].horizon);
+    const double x = strength_along(m, 1, 0, 0), y = strength_along(m, 0, 1, 0);
+    const bool told = strstr(breccia_model_overview(m), "times the stress of its bonds") != NULL;
+    print_message("%s, %s, %s: %.4f along x, %.4f along y\n", cases[k].law, cases[k].block, cases[k].horizon, x, y);
+    assert_int_equal(told, !isnan(cases[k].x));
+    if (isnan(cases[k].x)) {
+      assert_true(isnan(x) && isnan(y));
+    } else {
+      assert_near(x, cases[k].x, cases[k].within);
+      assert_near(y, cases[k].y, cases[k].within);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bodies_of_yielding_bonds_carry_more_than_their_bonds),
       cmocka_unit_test(bending_strength_lies_between_measured_beams),
       cmocka_unit_test(bending_strength_is_told),
       cmocka_unit_test(six_neighbours_carry_what_a_closed_form_says),
