@@ -76,7 +76,8 @@ def attempt(part):
     if done.returncode or not tried:
         lost = max(lost, 1)
     minutes = (datetime.datetime.now() - begun).total_seconds() / 60
-    said = f"\n{done.stdout[-6000:]}" if lost else ""
+    failures = [line for line in done.stdout.splitlines() if "FAIL" in line]  # wherever they stand in a long output
+    said = "\n".join(["", *failures[:50], done.stdout[-2000:]]) if lost else ""
     print(f"{name}: {tried} tried, {lost} lost ({minutes:.1f} min){said}", flush=True)
     return name, tried, lost
 
